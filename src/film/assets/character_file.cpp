@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
-#include <cctype>
 #include <utility>
 
 #include "film/assets/character_reader.hpp"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -359,24 +358,12 @@ class CharacterReader {
   /// files have several vertices for one point, which would separate the surface there. Removes vertices without faces.
   void join_vertices() {
     std::unordered_map<std::string, Index> known;
-    std::vector<Index> renamed(raw_mesh_.positions.size(), -1);
-    std::vector<std::size_t> kept;
-    std::string key;
-    const auto rename = [&](Index& v) {
-      const auto old = static_cast<std::size_t>(v);
-      if (renamed[old] < 0) {
-        write_key(old, key);
-        const auto [found, is_new] = known.emplace(key, static_cast<Index>(kept.size()));
-        if (is_new) kept.push_back(old);
-        renamed[old] = found->second;
-      }
-      v = renamed[old];
-    };
-    for (auto& q : raw_mesh_.quads) std::for_each(q.begin(), q.end(), rename);
-    for (auto& t : raw_mesh_.triangles) std::for_each(t.begin(), t.end(), rename);
-
+    std::vector<Index> groups;
+    for (std::size_t v = 0; v < raw_mesh_.positions.size(); ++v)
+      groups.push_back(known.emplace(key_of(v), static_cast<Index>(known.size())).first->second);
+    const std::vector<Index> kept = join_groups(raw_mesh_, groups);
     std::vector<Vec3> positions;
-    for (const std::size_t old : kept) {
+    for (const Index old : kept) {
       positions.push_back(raw_mesh_.positions[old]);
       character_.material_of_vertex.push_back(materials_[old]);
       character_.first_influence.push_back(static_cast<Index>(character_.influences.size()));
@@ -385,19 +372,19 @@ class CharacterReader {
     character_.first_influence.push_back(static_cast<Index>(character_.influences.size()));
     for (Morph& morph : morphs_) {
       std::vector<Vec3> displacements;
-      for (const std::size_t old : kept) displacements.push_back(morph.at(old));
+      for (const Index v : kept) displacements.push_back(morph.at(at(v)));
       character_.morphs.push_back({std::move(morph.name), std::move(displacements), morph.weight});
     }
     raw_mesh_.positions = std::move(positions);
   }
 
-  /// Writes all data that determine the position of a vertex over time to `key`, as bytes.
-  void write_key(std::size_t v, std::string& key) const {
+  /// All data that determine the position of a vertex over time, as bytes.
+  std::string key_of(std::size_t v) const {
+    std::string key;
     const auto append_number = [&](double number) {
       number += 0.0;  // 0 and -0 are equal
       key.append(reinterpret_cast<const char*>(&number), sizeof number);
     };
-    key.clear();
     for (const double x : raw_mesh_.positions[v]) append_number(x);
     for (const character::Influence& influence : weights_[v]) {
       append_number(influence.bone);
@@ -405,6 +392,7 @@ class CharacterReader {
     }
     for (const Morph& morph : morphs_)
       for (const double x : morph.at(v)) append_number(x);
+    return key;
   }
 
   void make_faces() {

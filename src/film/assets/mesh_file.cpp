@@ -41,23 +41,11 @@ std::vector<Index> first_at_same_place(const std::vector<Vec3>& positions) {
 /// vertex; −1: removed.
 std::vector<Index> join_vertices(RawMesh& raw, std::size_t& joined) {
   const std::vector<Index> first = first_at_same_place(raw.positions);
-  std::vector<Index> renamed(first.size(), -1);
+  std::vector<Index> renamed = first;
   std::vector<Vec3> kept;
-  const auto rename = [&](Index& v) {
-    const auto representative = static_cast<std::size_t>(first[v]);
-    if (renamed[representative] < 0) {
-      renamed[representative] = static_cast<Index>(kept.size());
-      kept.push_back(raw.positions[representative]);
-    }
-    v = renamed[representative];
-  };
-  for (auto& q : raw.quads) std::for_each(q.begin(), q.end(), rename);
-  for (auto& t : raw.triangles) std::for_each(t.begin(), t.end(), rename);
+  for (const Index v : join_groups(raw, renamed)) kept.push_back(raw.positions[at(first[at(v)])]);
   raw.positions = std::move(kept);
-  for (std::size_t v = 0; v < first.size(); ++v) {
-    joined += first[v] == static_cast<Index>(v) ? 0 : 1;
-    renamed[v] = renamed[static_cast<std::size_t>(first[v])];
-  }
+  for (std::size_t v = 0; v < first.size(); ++v) joined += first[v] == static_cast<Index>(v) ? 0 : 1;
   return renamed;
 }
 

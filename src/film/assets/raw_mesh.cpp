@@ -209,6 +209,22 @@ RawMesh read_raw_mesh(const std::filesystem::path& file, const std::string& obje
   return raw;
 }
 
+std::vector<Index> join_groups(RawMesh& raw, std::vector<Index>& groups) {
+  std::vector<Index> joined(groups.size(), -1), kept;  // joined: new vertex of each group
+  const auto rename = [&](Index& v) {
+    Index& vertex = joined[at(groups[at(v)])];
+    if (vertex < 0) {
+      vertex = static_cast<Index>(kept.size());
+      kept.push_back(v);
+    }
+    v = vertex;
+  };
+  for (auto& q : raw.quads) std::for_each(q.begin(), q.end(), rename);
+  for (auto& t : raw.triangles) std::for_each(t.begin(), t.end(), rename);
+  for (Index& group : groups) group = joined[at(group)];
+  return kept;
+}
+
 mesh::Topology make_topology(const RawMesh& raw, std::size_t& removed_triangles,
                              std::span<const std::vector<Vec3>> later_positions) {
   mesh::Topology topology;

@@ -43,6 +43,12 @@ RawMesh read_raw_mesh(const std::filesystem::path& file, const std::string& obje
 /// Appends a face. Divides a face that is no quad into triangles.
 void append_face(RawMesh& raw, std::span<const Index> corners);
 
+/// Joins the vertices of each group: replaces the vertices of faces by new ones, one per group with a face, in the
+/// order of their first use. Leaves positions and other data as they are. `groups`: per vertex, its group, a number
+/// below the number of vertices; becomes the new vertex, or -1 if no face uses the group. Returns for each new vertex
+/// the old one that is used first.
+std::vector<Index> join_groups(RawMesh& raw, std::vector<Index>& groups);
+
 /// The surface of a raw mesh. If the raw mesh has only quads, and both halves of each quad have an area, the surface
 /// has these quads. Otherwise, it has only triangles with an area; sets `removed_triangles` to the number of the
 /// others. A triangle has no area if it has a repeated corner or all corners on a line, in `raw` and in all

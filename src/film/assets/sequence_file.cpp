@@ -61,9 +61,9 @@ void split_groups(const std::vector<Vec3>& positions, std::vector<Index>& groups
   }
 }
 
-std::vector<Vec3> kept_of(const std::vector<Vec3>& positions, const std::vector<std::size_t>& kept) {
+std::vector<Vec3> kept_of(const std::vector<Vec3>& positions, const std::vector<Index>& kept) {
   std::vector<Vec3> result;
-  for (const std::size_t v : kept) result.push_back(positions[v]);
+  for (const Index v : kept) result.push_back(positions[at(v)]);
   return result;
 }
 
@@ -97,19 +97,7 @@ LoadedSequence load_sequence(std::span<const std::filesystem::path> files, const
     loaded.positions.push_back(std::move(raw.positions));
   }
 
-  // Groups become vertices, in the order of their first use in faces.
-  std::vector<Index> renamed(groups.size(), -1);
-  std::vector<std::size_t> kept;
-  const auto rename = [&](Index& v) {
-    Index& name = renamed[groups[v]];
-    if (name < 0) {
-      name = static_cast<Index>(kept.size());
-      kept.push_back(static_cast<std::size_t>(v));
-    }
-    v = name;
-  };
-  for (auto& q : first.quads) std::for_each(q.begin(), q.end(), rename);
-  for (auto& t : first.triangles) std::for_each(t.begin(), t.end(), rename);
+  const std::vector<Index> kept = join_groups(first, groups);
   for (std::vector<Vec3>& positions : loaded.positions) positions = kept_of(positions, kept);
   first.positions = loaded.positions.front();
   std::size_t flat = 0;
