@@ -7,6 +7,7 @@
 
 #include "film/character/mannequin_parts.hpp"
 #include "film/character/mannequin_shape.hpp"
+#include "film/character/pose.hpp"
 
 namespace weft::character {
 namespace {
@@ -29,8 +30,7 @@ struct TranslucentColor {
 /// Opacity of an area with a soft outline: 0 up to the depth -edge / 2, 1 from edge / 2 on, smooth between. `depth`:
 /// distance of a point inside the outline; < 0: outside. `edge`: width of the soft outline, in the same unit.
 double inside(double depth, double edge) {
-  const double t = std::clamp(0.5 + depth / edge, 0.0, 1.0);
-  return t * t * (3 - 2 * t);
+  return ease(0.5 + depth / edge);
 }
 
 /// The y coordinate of a polyline at x = `at`. The x coordinates of its points must increase. Beyond its ends, y is

@@ -127,15 +127,15 @@ Vec2 turn_displacement(const Physique& body) {
 }  // namespace
 
 Physique physique_of(const Character& mannequin) {
-  const auto z = [](Joint joint) { return static_cast<std::size_t>(joint); };
   Physique body;
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const Node& node = mannequin.nodes[j];
     body.joints[j] = node.local.translation();
     if (node.parent >= 0) body.joints[j] += body.joints[node.parent];
   }
-  const Vec3 hip = body.joints[z(Joint::left_upper_leg)], knee = body.joints[z(Joint::left_lower_leg)],
-             ankle = body.joints[z(Joint::left_foot)], ball = body.joints[z(Joint::left_toes)] - ankle;
+  const auto at = [&](Joint joint) -> const Vec3& { return body.joints[joint_index(joint)]; };
+  const Vec3 hip = at(Joint::left_upper_leg), knee = at(Joint::left_lower_leg), ankle = at(Joint::left_foot),
+             ball = at(Joint::left_toes) - ankle;
   body.height = hip.z() / 0.530;
   body.foot_yaw = std::atan2(ball.x(), -ball.y());
   const double cm = body.height / 175;

@@ -26,11 +26,7 @@ constexpr double kSoleRounding = 0.012;  ///< rounding between sole and side of 
 /// The body with flat soles: cuts off the part below the floor.
 mesh::Field standing_on_floor(const BlendedBody& body, double height) {
   const double rim = kSoleRounding * height / 1.75;
-  return [&body, rim](const Vec3& p) {
-    const double f = body(p), floor = -p.z();
-    const double h = std::max(rim - std::abs(f - floor), 0.0) / rim;
-    return std::max(f, floor) + h * h * h * rim / 6;
-  };
+  return [&body, rim](const Vec3& p) { return -smooth_min(-body(p), p.z(), rim); };
 }
 
 /// Target edge length [m]: shorter where the body is thin or strongly curved (arms, hands, shins, feet, neck, head,

@@ -23,14 +23,15 @@ constexpr double kPlateRoot = 16,
 constexpr double kClosing =
     0.040;  ///< slope of a finger toward the middle of the hand per distance from the middle [1/cm]
 
+/// The frame at `from` with the axis `along`, and u as close as possible to `across`.
+LoftFrame frame_along(const Vec3& from, const Vec3& along, const Vec3& across) {
+  const Vec3 u = (across - across.dot(along) * along).normalized();
+  return {from, along, u, along.cross(u)};
+}
+
 /// Adds a rod with round ends.
-void add_rod(BlendedBody& body, const Scale& s, const Vec3& from, const Vec3& along, const Vec3& across, double length,
-             double radius, double end_radius, double blend) {
-  LoftFrame frame;
-  frame.origin = from;
-  frame.along = along;
-  frame.u = (across - across.dot(along) * along).normalized();
-  frame.v = along.cross(frame.u);
+void add_rod(BlendedBody& body, const Scale& s, const LoftFrame& frame, double length, double radius, double end_radius,
+             double blend) {
   const Rows rows{{0, 0, 0, radius, radius, radius, 2}, {length, 0, 0, end_radius, end_radius, end_radius, 2}};
   body.add(Loft(frame, scale_sections(rows, s, false), radius * s.length, end_radius * s.length), blend, true);
 }
@@ -40,20 +41,14 @@ struct Plate {
   double length, width, end_width, thickness;
 };
 
-void add_plate(BlendedBody& body, const Scale& s, const Vec3& from, const Vec3& along, const Vec3& across,
-               const Plate& plate) {
-  LoftFrame frame;
-  frame.origin = from;
-  frame.along = along;
-  frame.u = (across - across.dot(along) * along).normalized();
-  frame.v = along.cross(frame.u);
+void add_plate(BlendedBody& body, const Scale& s, const LoftFrame& frame, const Plate& plate) {
   const Rows rows{{0, 0, 0, plate.width, plate.thickness, plate.thickness, 2.5},
                   {plate.length, 0, 0, plate.end_width, plate.thickness, plate.thickness, 2.5}};
   body.add(Loft(frame, scale_sections(rows, s, false), 0.6 * s.length, 0.6 * s.length), 0.5 * s.length, true);
 }
 
 Vec3 bent(const Vec3& along, const Vec3& toward, double degrees) {
-  const double angle = degrees * 0.017453292519943295;
+  const double angle = degrees * kDegree;
   return std::cos(angle) * along + std::sin(angle) * toward;
 }
 
@@ -73,21 +68,21 @@ void add_hand(BlendedBody& body, const Scale& s, const LoftFrame& arm) {
   // Without the plates, the surfaces of neighbouring fingers would nearly touch, and triangles between them would fold.
   const Vec3 first_plate = bent(arm.along, inward, kPlateRoot), second_plate = bent(arm.along, inward, kPlateTip);
   const Vec3 knuckles = place(66.5, -0.1, 0.1);
-  add_plate(body, s, knuckles, first_plate, arm.v, {4.9, 3.1, 2.7, 0.55});
-  add_plate(body, s, knuckles + s.length * 4.9 * first_plate, second_plate, arm.v, {3.4, 2.7, 1.6, 0.5});
+  add_plate(body, s, frame_along(knuckles, first_plate, arm.v), {4.9, 3.1, 2.7, 0.55});
+  add_plate(body, s, frame_along(knuckles + s.length * 4.9 * first_plate, second_plate, arm.v), {3.4, 2.7, 1.6, 0.5});
   for (const Finger& f : kRelaxedFingers) {
     const Vec3 ahead = (arm.along - kClosing * f.forward * arm.v).normalized();
     const Vec3 root = place(f.at, -0.1, f.forward), first = bent(ahead, inward, f.root);
     const Vec3 middle = root + s.length * f.first * first, second = bent(ahead, inward, f.root + f.middle);
-    add_rod(body, s, root, first, arm.v, f.first, f.radius, 0.96 * f.radius, 0.3 * s.length);
-    add_rod(body, s, middle, second, arm.v, f.second - 0.8 * f.radius, 0.96 * f.radius, 0.84 * f.radius,
+    add_rod(body, s, frame_along(root, first, arm.v), f.first, f.radius, 0.96 * f.radius, 0.3 * s.length);
+    add_rod(body, s, frame_along(middle, second, arm.v), f.second - 0.8 * f.radius, 0.96 * f.radius, 0.84 * f.radius,
             0.3 * s.length);
   }
   const Vec3 root = place(60.6, -0.7, 2.2), first = (0.78 * arm.along + 0.56 * arm.v - 0.3 * arm.u).normalized();
   const Vec3 middle = root + s.length * 4.3 * first;
   const Vec3 second = (0.92 * arm.along + 0.3 * arm.v - 0.3 * arm.u).normalized();
-  add_rod(body, s, root, first, arm.u, 4.3, 1.35, 1.0, 1.2 * s.length);
-  add_rod(body, s, middle, second, arm.u, 2.4, 1.0, 0.78, 0.4 * s.length);
+  add_rod(body, s, frame_along(root, first, arm.u), 4.3, 1.35, 1.0, 1.2 * s.length);
+  add_rod(body, s, frame_along(middle, second, arm.u), 2.4, 1.0, 0.78, 0.4 * s.length);
 }
 
 }  // namespace weft::character

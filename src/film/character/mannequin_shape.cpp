@@ -156,8 +156,7 @@ Rows scale_sections(Rows rows, const Scale& scale, bool grows) {
 }
 
 Loft ellipsoid(const Scale& scale, const Vec3& middle, const Vec3& half, double pitch, double yaw) {
-  constexpr double degree = 0.017453292519943295;
-  const Eigen::AngleAxisd nod(pitch * degree, Vec3::UnitX()), turn(yaw * degree, Vec3::UnitZ());
+  const Eigen::AngleAxisd nod(pitch * kDegree, Vec3::UnitX()), turn(yaw * kDegree, Vec3::UnitZ());
   LoftFrame frame{scale.length * Vec3(middle.x(), -middle.y(), middle.z())};
   frame.along = turn * (nod * frame.along);
   frame.u = turn * (nod * frame.u);
@@ -172,7 +171,7 @@ BlendedBody mannequin_body(const MannequinBuild& build) {
   scale.girth = scale.length * build.girth;
   scale.masculinity = build.masculinity;
   const auto joints = mannequin_joints(build);
-  const auto at = [&](Joint j) { return joints[static_cast<std::size_t>(j)]; };
+  const auto at = [&](Joint j) { return joints[joint_index(j)]; };
 
   BlendedBody body;
   add_torso(body, scale);

@@ -22,7 +22,7 @@ class WeightBlender {
   WeightBlender(const std::array<Vec3, kJointCount>& joints, double height, const Vec3& p)
       : joints_(joints), cm_(height / 175), x_(p.x() / cm_), forward_(-p.y() / cm_), up_(p.z() / cm_), p_(p) {
     weight_.fill(0);
-    weight_[z(Joint::hips)] = 1;
+    weight_[joint_index(Joint::hips)] = 1;
   }
 
   Weights compute() {
@@ -34,13 +34,12 @@ class WeightBlender {
   }
 
  private:
-  static std::size_t z(Joint joint) { return static_cast<std::size_t>(joint); }
-  const Vec3& at(Joint joint) const { return joints_[z(joint)]; }
+  const Vec3& at(Joint joint) const { return joints_[joint_index(joint)]; }
 
   /// Moves the fraction `s` of the weight of `from` to `to`.
   void transfer(Joint from, Joint to, double s) {
-    weight_[z(to)] += s * weight_[z(from)];
-    weight_[z(from)] *= 1 - s;
+    weight_[joint_index(to)] += s * weight_[joint_index(from)];
+    weight_[joint_index(from)] *= 1 - s;
   }
 
   void torso_and_head() {
@@ -80,10 +79,10 @@ class WeightBlender {
     // Vertices between the legs get weight on both legs.
     const double bridge = 0.6 + 3.5 * smooth_ramp(up_, 71, 80);
     const double left = smooth_ramp(x_, -bridge, bridge);
-    const double leg_weight = weight_[z(Joint::hips)] * leg;
-    weight_[z(Joint::hips)] -= leg_weight;
-    weight_[z(Joint::left_upper_leg)] += left * leg_weight;
-    weight_[z(Joint::right_upper_leg)] += (1 - left) * leg_weight;
+    const double leg_weight = weight_[joint_index(Joint::hips)] * leg;
+    weight_[joint_index(Joint::hips)] -= leg_weight;
+    weight_[joint_index(Joint::left_upper_leg)] += left * leg_weight;
+    weight_[joint_index(Joint::right_upper_leg)] += (1 - left) * leg_weight;
 
     const double knee = at(Joint::left_lower_leg).z() / cm_;
     transfer(Joint::left_upper_leg, Joint::left_lower_leg, smooth_ramp(-up_, -knee - 7, -knee + 7));
