@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <numbers>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -28,10 +28,6 @@ constexpr double kStandingLean = 5 * kDegree, kStandingBoneLean = 20 * kDegree;
 Vec3 unit(const Vec3& v) {
   const double length = v.norm();
   return length > kNegligibleLength ? Vec3(v / length) : Vec3(Vec3::Zero());
-}
-
-double angle(const Vec3& a, const Vec3& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
 /// Gaussian weight: 1 at angle 0, 1/e at `width`.
@@ -152,8 +148,8 @@ class AnatomyFinder {
     };
     const auto standing = [&](const Posture& p, std::size_t k) {
       const Vec3 along = bone(p, k);
-      return falloff(angle(skeleton_.trunk(p), up_), kStandingLean) *
-             (along.isZero() ? 1 : falloff(angle(along, up_), kStandingBoneLean));
+      return falloff(angle_between(skeleton_.trunk(p), up_), kStandingLean) *
+             (along.isZero() ? 1 : falloff(angle_between(along, up_), kStandingBoneLean));
     };
     const Vec3 z = sum(joint, standing, upright(), bone);
     const Vec3 x = sum(joint, [&](const Posture& p, std::size_t) {
@@ -325,6 +321,13 @@ Vec3 Skeleton::trunk(const Posture& posture) const {
   for (const Joint top : {Joint::neck, Joint::head, Joint::chest, Joint::spine})
     if (has(top)) return posture.places[joint_index(top)] - from;
   return bone(posture, Joint::hips);
+}
+
+double Skeleton::lowest_height(const Posture& posture, std::span<const Joint> joints, const Vec3& up) const {
+  double height = std::numeric_limits<double>::infinity();
+  for (const Joint joint : joints)
+    if (has(joint)) height = std::min(height, up.dot(posture.places[joint_index(joint)]));
+  return height;
 }
 
 double Skeleton::leg_length(const Posture& posture) const {

@@ -49,6 +49,8 @@ class Skeleton {
   /// Vector from middle_of_hips() to the midpoint of the upper-arm joints. If one of these is missing: to the first
   /// existing joint of neck, head, chest and spine. If all are missing: bone() of the hips.
   Vec3 trunk(const Posture& posture) const;
+  /// Height of the lowest of these joints [m]; infinite if all are missing. `up`: unit vector.
+  double lowest_height(const Posture& posture, std::span<const Joint> joints, const Vec3& up) const;
   /// Mean length (thigh plus shin) of the legs that have hip, knee and ankle joints; 0 if there is no such leg.
   double leg_length(const Posture& posture) const;
   /// Mean length of the arms, upper arm plus forearm; 0 if an upper-arm, elbow or hand joint is missing.

@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 
 namespace weft::character {
 namespace {
@@ -16,14 +15,6 @@ constexpr double kMaxTrunkSlope = 0.5;
 /// A hand is on the floor if it is less than this above the lowest foot [leg lengths].
 constexpr double kMaxHandHeight = 0.25;
 
-double lowest_height(const Skeleton& skeleton, const Posture& posture, std::initializer_list<Joint> joints,
-                     const Vec3& up) {
-  double height = std::numeric_limits<double>::infinity();
-  for (const Joint joint : joints)
-    if (skeleton.has(joint)) height = std::min(height, up.dot(posture.places[joint_index(joint)]));
-  return height;
-}
-
 }  // namespace
 
 std::optional<std::string> warn_if_on_all_fours(const Skeleton& skeleton, std::span<const Posture> postures,
@@ -33,9 +24,8 @@ std::optional<std::string> warn_if_on_all_fours(const Skeleton& skeleton, std::s
   double steepness = 0, on_floor = 0;
   for (const Posture& posture : postures) {
     steepness += std::abs(up.dot(skeleton.trunk(posture).normalized()));
-    const double feet = lowest_height(skeleton, posture,
-                                      {Joint::left_foot, Joint::left_toes, Joint::right_foot, Joint::right_toes}, up);
-    const double hands = lowest_height(skeleton, posture, {Joint::left_hand, Joint::right_hand}, up);
+    const double feet = skeleton.lowest_height(posture, kFootJoints, up),
+                 hands = skeleton.lowest_height(posture, std::array{Joint::left_hand, Joint::right_hand}, up);
     on_floor += hands - feet < kMaxHandHeight * leg ? 1 : 0;
   }
   const auto count = static_cast<double>(postures.size());

@@ -1,6 +1,7 @@
 // The joints of a human body, and their names in common rigs.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -46,6 +47,9 @@ constexpr std::size_t joint_index(Joint joint) {
 constexpr Joint on_side(Joint left, bool right) {
   return static_cast<Joint>(joint_index(left) + (right ? kSideJointCount : 0));
 }
+
+/// The joints of both feet.
+inline constexpr std::array kFootJoints{Joint::left_foot, Joint::left_toes, Joint::right_foot, Joint::right_toes};
 
 std::string_view name(Joint joint);
 /// The parent joint. The hips are their own parent.

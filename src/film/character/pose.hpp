@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -63,6 +64,11 @@ Pose blend(const Pose& a, const Pose& b, double weight);
 /// The smallest rotation from the direction of `from` to that of `to`; if they are opposite, about any perpendicular
 /// axis. Replaces Quat::FromTwoVectors(), because the singular value decomposition in it takes long to compile.
 Quat shortest_rotation(const Vec3& from, const Vec3& to);
+
+/// Angle between two vectors [rad].
+inline double angle_between(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
 
 /// Transforms from node to world, for every node.
 std::vector<Affine> global_transforms(const Character& character, const Pose& pose);

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include "film/character/footing.hpp"
@@ -57,14 +56,6 @@ Quat heading_rotation(Vec3 from, Vec3 to, const Vec3& up) {
 Vec3 to_the_left(const Skeleton& skeleton, const Posture& posture) {
   const Vec3 hips = skeleton.across_hips(posture), shoulders = skeleton.across_shoulders(posture);
   return hips.normalized() + shoulders.normalized();
-}
-
-/// Height of the lowest joint of the feet; infinite without feet.
-double lowest_foot(const Skeleton& skeleton, const Posture& posture, const Vec3& up) {
-  double height = std::numeric_limits<double>::infinity();
-  for (const Joint joint : {Joint::left_foot, Joint::left_toes, Joint::right_foot, Joint::right_toes})
-    if (skeleton.has(joint)) height = std::min(height, up.dot(posture.places[joint_index(joint)]));
-  return height;
 }
 
 /// Whether two skeletons have the same joints and, up to one common factor, the same joint positions in the axes of
@@ -205,8 +196,9 @@ class Retargeter {
     const double travelled = up_.dot(middle) + ratio_ * up_.dot(moved);
     if (same_) {
       double ground = std::numeric_limits<double>::infinity();
-      for (const Posture& posture : postures_) ground = std::min(ground, lowest_foot(theirs_, posture, up_));
-      const double floor = lowest_foot(ours_, rest_, up_);
+      for (const Posture& posture : postures_)
+        ground = std::min(ground, theirs_.lowest_height(posture, kFootJoints, up_));
+      const double floor = ours_.lowest_height(rest_, kFootJoints, up_);
       return std::isfinite(ground) ? floor + ratio_ * (up_.dot(place) - ground) - travelled : 0;
     }
     double ankles = 0;
@@ -253,7 +245,7 @@ class Retargeter {
 
   /// Height of the soles in the rest pose [m]: that of the lowest vertex or foot joint.
   double floor() const {
-    double floor = lowest_foot(ours_, rest_, up_);
+    double floor = ours_.lowest_height(rest_, kFootJoints, up_);
     std::vector<Vec3> skin_at_rest(body_.character.mesh.positions.size());
     skin(body_.character, at_rest_, skin_at_rest);
     for (const Vec3& x : skin_at_rest) floor = std::min(floor, up_.dot(x));
@@ -417,11 +409,11 @@ class Retargeter {
     const auto axis = [&](const Posture& p, Joint joint, const Vec3& of) -> Vec3 {
       return p.rotations[joint_index(joint)] * (their_axes_[joint_index(joint)] * of);
     };
-    const auto angle = [](const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); };
     const auto lean = [&](Joint a, Joint b, const std::string& what, double limit) {
       if (theirs_.has(a) && theirs_.has(b))
         check_joint(
-            what, limit, [&](const Posture& p) { return angle(axis(p, a, Vec3::UnitZ()), axis(p, b, Vec3::UnitZ())); },
+            what, limit,
+            [&](const Posture& p) { return angle_between(axis(p, a, Vec3::UnitZ()), axis(p, b, Vec3::UnitZ())); },
             warnings);
     };
     lean(Joint::hips, Joint::chest, "the chest leans against the hips", kMaxSpine);
@@ -430,12 +422,16 @@ class Retargeter {
       if (const Joint thigh = on_side(Joint::left_upper_leg, right); theirs_.has(thigh))
         check_joint(
             fmt::format("{} goes up", name(thigh)), kMaxThigh,
-            [&](const Posture& p) { return angle(-axis(p, Joint::hips, Vec3::UnitZ()), theirs_.bone(p, thigh)); },
+            [&](const Posture& p) {
+              return angle_between(-axis(p, Joint::hips, Vec3::UnitZ()), theirs_.bone(p, thigh));
+            },
             warnings);
       for (const Joint left : {Joint::left_lower_arm, Joint::left_lower_leg}) {
         const Joint lower = on_side(left, right), upper = static_cast<Joint>(joint_index(lower) - 1);
         if (!theirs_.has(lower) || !theirs_.has(upper)) continue;
-        const auto bend = [&](const Posture& p) { return angle(theirs_.bone(p, upper), theirs_.bone(p, lower)); };
+        const auto bend = [&](const Posture& p) {
+          return angle_between(theirs_.bone(p, upper), theirs_.bone(p, lower));
+        };
         const auto backward = [&](const Posture& p) {
           const Vec3 hinge = theirs_.bone(p, upper).cross(theirs_.bone(p, lower));
           return hinge.dot(axis(p, lower, Vec3::UnitX())) < 0 ? bend(p) : 0;
@@ -452,8 +448,7 @@ class Retargeter {
     for (const bool right : {false, true}) {
       const Joint thigh = on_side(Joint::left_upper_leg, right), shin = on_side(Joint::left_lower_leg, right);
       if (!ours_.has(thigh) || !ours_.has(shin) || !ours_.has(on_side(Joint::left_foot, right))) continue;
-      const Vec3 a = ours_.bone(rest_, thigh), b = ours_.bone(rest_, shin);
-      largest = std::max(largest, std::atan2(a.cross(b).norm(), a.dot(b)) / kDegree);
+      largest = std::max(largest, angle_between(ours_.bone(rest_, thigh), ours_.bone(rest_, shin)) / kDegree);
     }
     if (largest > kMaxRestBend)
       warnings.push_back(

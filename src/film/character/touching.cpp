@@ -36,8 +36,7 @@ class HandDisplacement {
     sum_.setZero();
     weights_ = 0;
     const Vec3 upper = theirs_[elbow] - theirs_[shoulder], lower = theirs_[hand_] - theirs_[elbow];
-    const double bend = std::atan2(upper.cross(lower).norm(), upper.dot(lower));
-    const double bent = ease((bend - kHangingBend) / (kReachingBend - kHangingBend));
+    const double bent = ease((angle_between(upper, lower) - kHangingBend) / (kReachingBend - kHangingBend));
     add_target(hand_, across(Joint::left_hand), 0.5, kHandsDistance, proportions_.arm);
     add_target(across(Joint::left_lower_arm), across(Joint::left_lower_arm), 0, kElbowDistance, proportions_.arm);
     add_target(at(Joint::left_upper_leg), across(Joint::left_upper_leg), 0.5, kHipsDistance * bent, proportions_.trunk,
