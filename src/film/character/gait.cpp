@@ -88,9 +88,12 @@ class Walker {
                                       size * (walking::pelvis_pitch.at(phase) - walking::pelvis_pitch.mean));
   }
 
+  /// Index of the joint `left` or, on the side 1, of its mirror image.
+  static std::size_t index_on(Joint left, int side) { return joint_index(on_side(left, side != 0)); }
+
   Vec3 hip_offset(int k, int side) const {
-    const Joint hip = side == 0 ? Joint::left_upper_leg : Joint::right_upper_leg;
-    return pelvis_rotation(k) * (body_.joints[joint_index(hip)] - body_.joints[joint_index(Joint::hips)]);
+    return pelvis_rotation(k) *
+           (body_.joints[index_on(Joint::left_upper_leg, side)] - body_.joints[joint_index(Joint::hips)]);
   }
 
   /// World rotations of all joints.
@@ -118,10 +121,6 @@ class Walker {
     return global;
   }
 
-  static Joint of_side(Joint left, int side) {
-    return static_cast<Joint>(joint_index(left) + static_cast<std::size_t>(side) * kSideJointCount);
-  }
-
   /// Outward rotation of the forearms relative to the upper arms [degrees]. It is negative (inward), unless wide hips
   /// require more clearance.
   double turn_of_forearms() const {
@@ -147,11 +146,11 @@ class Walker {
     const Quat upper = hanging(out);
     const Vec3 along(sign * std::sqrt(0.5), 0, -std::sqrt(0.5));
     const Quat lower = hanging(out + forearm_turn_) * axis_rotation(bend * kDegree, along.cross(-Vec3::UnitY()));
-    global[joint_index(of_side(Joint::left_shoulder, side))] =
+    global[index_on(Joint::left_shoulder, side)] =
         chest * axis_rotation(-sign * kShoulderTurnRatio * forward * kDegree, Vec3::UnitZ());
-    global[joint_index(of_side(Joint::left_upper_arm, side))] = upper;
-    global[joint_index(of_side(Joint::left_lower_arm, side))] = lower;
-    global[joint_index(of_side(Joint::left_hand, side))] = lower;
+    global[index_on(Joint::left_upper_arm, side)] = upper;
+    global[index_on(Joint::left_lower_arm, side)] = lower;
+    global[index_on(Joint::left_hand, side)] = lower;
   }
 
   /// The rotation that maps the direction along0 exactly to along1, and side0 as close as possible to side1.
@@ -169,9 +168,9 @@ class Walker {
   /// Two-bone inverse kinematics from hip to ankle. The knee axis is halfway between the x axes of pelvis and foot.
   void leg(std::array<Quat, kJointCount>& global, const FootState& foot, int side, const Vec3& hip) const {
     const double sign = side == 0 ? 1 : -1;
-    const Vec3 hip0 = body_.joints[joint_index(of_side(Joint::left_upper_leg, side))],
-               knee0 = body_.joints[joint_index(of_side(Joint::left_lower_leg, side))],
-               ankle0 = body_.joints[joint_index(of_side(Joint::left_foot, side))];
+    const Vec3 hip0 = body_.joints[index_on(Joint::left_upper_leg, side)],
+               knee0 = body_.joints[index_on(Joint::left_lower_leg, side)],
+               ankle0 = body_.joints[index_on(Joint::left_foot, side)];
     const double a = (knee0 - hip0).norm(), b = (ankle0 - knee0).norm();
     const Vec3 to_ankle = foot.ankle - hip;
     const double d = std::min(to_ankle.norm(), 0.9999 * (a + b));
@@ -184,13 +183,11 @@ class Walker {
     const double sine = std::sqrt(std::max(1 - cosine * cosine, 0.0));
     const Vec3 thigh = a * (cosine * along + sine * along.cross(axis).normalized());
     const Vec3 shin = to_ankle - thigh;
-    global[joint_index(of_side(Joint::left_upper_leg, side))] =
-        rotation_between_frames(knee0 - hip0, Vec3::UnitX(), thigh, axis);
-    global[joint_index(of_side(Joint::left_lower_leg, side))] =
-        rotation_between_frames(ankle0 - knee0, Vec3::UnitX(), shin, axis);
+    global[index_on(Joint::left_upper_leg, side)] = rotation_between_frames(knee0 - hip0, Vec3::UnitX(), thigh, axis);
+    global[index_on(Joint::left_lower_leg, side)] = rotation_between_frames(ankle0 - knee0, Vec3::UnitX(), shin, axis);
     const Vec3 across = axis_rotation(foot.yaw + sign * body_.foot_yaw, Vec3::UnitZ()) * Vec3::UnitX();
-    global[joint_index(of_side(Joint::left_foot, side))] = axis_rotation(-foot.pitch, across) * foot_yaw;
-    global[joint_index(of_side(Joint::left_toes, side))] = axis_rotation(-foot.pitch - foot.toes, across) * foot_yaw;
+    global[index_on(Joint::left_foot, side)] = axis_rotation(-foot.pitch, across) * foot_yaw;
+    global[index_on(Joint::left_toes, side)] = axis_rotation(-foot.pitch - foot.toes, across) * foot_yaw;
   }
 
   void add_key(Clip& clip, const Feet& feet, int key) const {
