@@ -43,6 +43,10 @@ double grey_at(const image::Picture& picture, const Vec2& uv) {
          t * ((1 - s) * pixel(i, j + 1) + s * pixel(i + 1, j + 1));
 }
 
+[[noreturn]] void refuse(const std::string& key, const char* field, const std::string& why) {
+  throw Error(ExitCode::scene_invalid, "{}.{}: expected {}", key, field, why);
+}
+
 /// Finds the particles of the regions (scene::ClothPart) of one cloth.
 class ParticleFinder {
  public:
@@ -146,20 +150,9 @@ class ParticleFinder {
     for (const auto& [known, value] : map) names.push_back(known);
     refuse_name(name, names, key, field, kind);
   }
-  [[noreturn]] static void refuse_name(const std::string& name, const std::vector<std::string>& names,
-                                       const std::string& key, const char* field, const char* kind) {
-    const std::string nearest = nearest_name(name, names);
-    refuse(key, field,
-           fmt::format("{}, such as {}, got \"{}\"{}", kind, names.front(), name,
-                       nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest)));
-  }
   static void multiply(const std::vector<double>& factors, std::vector<double>& fractions) {
     for (std::size_t i = 0; i < fractions.size(); ++i) fractions[i] *= factors[i];
   }
-  [[noreturn]] static void refuse(const std::string& key, const char* field, const std::string& why) {
-    throw Error(ExitCode::scene_invalid, "{}.{}: expected {}", key, field, why);
-  }
-
   bool from_file_;
   const assets::LoadedMesh& file_;
   const model::Cloth& cloth_;
@@ -243,6 +236,14 @@ std::string nearest_row(const scene::ClothPart& part, const ClothDetails& detail
 }
 
 }  // namespace
+
+void refuse_name(const std::string& name, const std::vector<std::string>& known, const std::string& key,
+                 const char* field, const char* kind) {
+  const std::string nearest = nearest_name(name, known);
+  refuse(key, field,
+         fmt::format("{}, such as {}, got \"{}\"{}", kind, known.front(), name,
+                     nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest)));
+}
 
 void choose_particles(const scene::Scene& scene, const scene::Cloth& cloth, const assets::LoadedMesh& file,
                       const std::string& where, MadeCloth& made) {

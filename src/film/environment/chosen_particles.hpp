@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "film/assets/mesh_file.hpp"
 #include "film/environment/made_cloth.hpp"
@@ -17,5 +18,10 @@ namespace weft::environment {
 /// cannot be read.
 void choose_particles(const scene::Scene& scene, const scene::Cloth& cloth, const assets::LoadedMesh& file,
                       const std::string& where, MadeCloth& made);
+
+/// Throws Error(scene_invalid) for a name that is not among the known ones, with the most similar of these. `key`,
+/// `field`: key of a table in the scene, and the key in it; `kind`: what is expected.
+[[noreturn]] void refuse_name(const std::string& name, const std::vector<std::string>& known, const std::string& key,
+                              const char* field, const char* kind);
 
 }  // namespace weft::environment

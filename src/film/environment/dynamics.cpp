@@ -1,7 +1,6 @@
 #include "film/environment/dynamics.hpp"
 
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -14,7 +13,7 @@ std::shared_ptr<const model::Dynamics> make_dynamics(const scene::Scene& scene, 
   try {
     mesh::RigidFrame frame(mesh.topology.triangles, mesh.positions);
     const double mass = obstacle.mass > 0 ? obstacle.mass : obstacle.density * frame.volume();
-    const Vec3 angular_velocity = std::numbers::pi / 180 * obstacle.spin;
+    const Vec3 angular_velocity = kDegree * obstacle.spin;
     // If the scene sets no release, or one before the start of the run, forces move the obstacle from this start on.
     const double no_release = -std::numeric_limits<double>::infinity(), release = obstacle.release.value_or(no_release);
     return std::make_shared<const model::Dynamics>(

@@ -10,7 +10,6 @@
 
 #include "core/error.hpp"
 #include "core/grading.hpp"
-#include "core/nearest.hpp"
 #include "film/assets/mending.hpp"
 #include "film/environment/chosen_particles.hpp"
 #include "film/environment/orientation.hpp"
@@ -140,12 +139,8 @@ const garment::Wearer* fill_from_pattern(const scene::Scene& scene, const scene:
   made.cloth.sheet = std::move(garment.sheet);
   made.cloth.spacing = std::numbers::sqrt2 * mesh::min_height(made.cloth.sheet);
   for (const scene::PanelPaint& panel : cloth.look.panels)
-    if (std::ranges::find(made.details.panels, panel.name) == made.details.panels.end()) {
-      const std::string nearest = nearest_name(panel.name, made.details.panels);
-      throw Error(ExitCode::scene_invalid, "{}.look.panel: expected a panel of its pattern, such as {}, got \"{}\"{}",
-                  where, made.details.panels.front(), panel.name,
-                  nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
-    }
+    if (std::ranges::find(made.details.panels, panel.name) == made.details.panels.end())
+      refuse_name(panel.name, made.details.panels, where, "look.panel", "a panel of its pattern");
   return fitted != nullptr ? fitted : wearer;
 }
 
@@ -327,7 +322,7 @@ MadeCloth make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Weare
   for (Vec3& x : made.cloth.mesh.positions) x = cloth.pose.position + cloth.pose.rotation * x;
   made.cloth.start = start_positions(scene.up, cloth, worn_by, made.cloth.mesh);
   made.cloth.velocity = cloth.velocity;
-  made.cloth.spin = std::numbers::pi / 180 * cloth.spin;
+  made.cloth.spin = kDegree * cloth.spin;
   return made;
 }
 

@@ -7,16 +7,6 @@
 #include "film/scene/following.hpp"
 
 namespace weft::environment {
-namespace {
-
-/// The obstacle with the name `follow`; none if `follow` is empty or names a part of a character.
-model::Parent parent_of(const scene::Scene& scene, const std::string& follow) {
-  const auto found = std::ranges::find(scene.obstacles, follow, &scene::Obstacle::name);
-  if (follow.empty() || found == scene.obstacles.end()) return {};
-  return {.body = static_cast<std::size_t>(found - scene.obstacles.begin())};
-}
-
-}  // namespace
 
 std::shared_ptr<const motion::Track> track_of_frame(const motion::KeyFrames& keys, std::size_t first,
                                                     scene::Interpolation interpolation) {
@@ -33,9 +23,12 @@ std::shared_ptr<const motion::Track> track_of_frame(const motion::KeyFrames& key
 
 // At the start, every object has the pose of its own keys, even if it follows another object.
 void Environment::add_parents(const scene::Scene& scene) {
+  // The obstacle with the name `follow`; none if `follow` is empty or names a part of a character.
   const auto parent_at_start = [&](const std::string& follow) {
-    model::Parent parent = parent_of(scene, follow);
-    if (parent.body == model::Parent::kNone) return parent;
+    model::Parent parent;
+    const auto found = std::ranges::find(scene.obstacles, follow, &scene::Obstacle::name);
+    if (follow.empty() || found == scene.obstacles.end()) return parent;
+    parent.body = static_cast<std::size_t>(found - scene.obstacles.begin());
     const motion::PoseSample start = std::get<motion::Track>(*model.bodies[parent.body].mover).at(scene.start_time());
     parent.start = {start.position, start.rotation};
     return parent;
