@@ -7,10 +7,9 @@
 #include <algorithm>
 #include <string>
 
+#include "environment/rod_scene.hpp"
 #include "film/environment/environment.hpp"
 #include "physics/mesh/topology.hpp"
-#include "support/small_character.hpp"
-#include "support/test_folder.hpp"
 
 namespace weft::environment {
 namespace {
@@ -22,25 +21,15 @@ constexpr double kSingle = 1e-6;
 /// vertices.
 constexpr std::size_t kLow = 2, kHigh = 3;
 
-class Acting : public support::TestFolder {
+class Acting : public RodScene {
  protected:
   void SetUp() override {
-    TestFolder::SetUp();
-    support::write_bytes(folder_ / "rod.x", support::rod_file());
-    scene_.file = "scenes/a.toml";
+    RodScene::SetUp();
     scene_.time.duration = 2;
-    scene_.characters.emplace_back();
-    character_.name = "rod";
     character_.line = 7;
     character_.column = 1;
-    file_.path = folder_ / "rod.x";
   }
 
-  Actor make(std::span<const FollowerPoints> following = {}) {
-    character_.source = file_;
-    scene_.characters[0] = character_;
-    return make_actor(scene_, character_, following);
-  }
   static std::vector<Vec3> at(const Actor& actor, double t) {
     std::vector<Vec3> positions(actor.mesh.positions.size());
     actor.keys.at(t, positions);
@@ -49,10 +38,6 @@ class Acting : public support::TestFolder {
   void expect_refused(ExitCode code, const std::string& words) {
     support::expect_error(code, words, [&] { make(); });
   }
-
-  scene::Scene scene_;
-  scene::Character character_;
-  scene::CharacterFile file_;
 };
 
 TEST_F(Acting, TurnsTheFileUpScalesItAndPutsItInItsPlace) {
@@ -229,7 +214,6 @@ TEST_F(Acting, LeavesPartsOutOfContactAndClosesWhatIsLeft) {
   character_.source = mannequin;
   character_.parts = {part("arms"), part("left_upper_arm")};
   character_.parts[0].collide = false;
-  scene_.characters[0] = character_;
   const Environment environment(scene_);
   const model::Body& body = environment.model.bodies[0];
   const auto triangles = body.colliding_triangles();
@@ -248,7 +232,6 @@ TEST_F(Acting, LeavesPartsOutOfContactAndClosesWhatIsLeft) {
   character_.parts = {part("all")};
   character_.parts[0].bone = "Hips";
   character_.parts[0].collide = false;
-  scene_.characters[0] = character_;
   EXPECT_FALSE(Environment(scene_).model.bodies[0].collide) << "nothing is left";
 }
 
@@ -475,7 +458,6 @@ TEST_F(Acting, CharactersOfASceneMoveAsBodiesAfterItsObstacles) {
   scene_.obstacles[0].name = "ball";
   character_.friction = 0.9;
   character_.source = file_;
-  scene_.characters[0] = character_;
   const Environment environment(scene_);
   ASSERT_EQ(environment.model.bodies.size(), 2u);
   const model::Body& body = environment.model.bodies[1];

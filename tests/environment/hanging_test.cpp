@@ -2,26 +2,19 @@
 #include <gtest/gtest.h>
 
 #include "core/error.hpp"
+#include "environment/rod_scene.hpp"
 #include "film/environment/environment.hpp"
 #include "film/environment/wearers.hpp"
-#include "support/small_character.hpp"
-#include "support/test_folder.hpp"
 
 namespace weft::environment {
 namespace {
 
-class HangingSheets : public support::TestFolder {};
+class HangingSheets : public RodScene {};
 
 // The rod is 2 m tall, and passes through the middle of a horizontal sheet.
 TEST_F(HangingSheets, MoveOffABodyWithoutArmsAndLegs) {
-  support::write_bytes(folder_ / "rod.x", support::rod_file());
-  scene::Scene scene;
-  scene::CharacterFile file;
-  file.path = folder_ / "rod.x";
-  scene::Character& character = scene.characters.emplace_back();
-  character.name = "rod";
-  character.source = file;
-  scene::Cloth& sheet = scene.cloths.emplace_back();
+  character_.source = file_;
+  scene::Cloth& sheet = scene_.cloths.emplace_back();
   sheet.name = "sheet";
   sheet.size = {1, 1};
   sheet.particles_weft = sheet.particles_warp = 5;
@@ -29,10 +22,10 @@ TEST_F(HangingSheets, MoveOffABodyWithoutArmsAndLegs) {
   sheet.pins.emplace_back().follow = "rod.Spine";
   sheet.start = scene::ClothStart::untangle;
   const double thickness = sheet.material.thickness;
-  const Environment environment(scene);
+  const Environment environment(scene_);
   for (const Vec3& x : environment.model.cloths[0].start) EXPECT_NEAR(x.z(), 2 + thickness, 1e-6);
 
-  Wearers wearers(scene);
+  Wearers wearers(scene_);
   wearers.carrier("rod", "here");
   support::expect_error(ExitCode::scene_invalid, "here: expected a wearer that stands upright with two joints UpperLeg",
                         [&] { wearers.of("rod", "here"); });

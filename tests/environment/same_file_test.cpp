@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "environment/rod_scene.hpp"
 #include "film/environment/environment.hpp"
 #include "physics/mesh/geometry.hpp"
-#include "support/small_character.hpp"
-#include "support/test_folder.hpp"
 
 namespace weft::environment {
 namespace {
@@ -17,20 +16,8 @@ namespace {
 // Tolerance for coordinates of a few metres from single-precision files [m].
 constexpr double kSingle = 1e-6;
 
-class SameFile : public support::TestFolder {
+class SameFile : public RodScene {
  protected:
-  void SetUp() override {
-    TestFolder::SetUp();
-    file_.path = folder_ / "rod.x";
-    scene_.file = "scenes/a.toml";
-    scene_.characters.emplace_back();
-    scene_.characters[0].name = "rod";
-  }
-  Actor make() {
-    scene_.characters[0].source = file_;
-    return make_actor(scene_, scene_.characters[0]);
-  }
-
   static std::string rod_with_dress() {
     std::string file = support::rod_file();
     file.insert(
@@ -39,9 +26,6 @@ class SameFile : public support::TestFolder {
         "  Mesh Cloth { 3; -0.3;0.5;0.2;, 0.3;0.5;0.2;, 0.0;1.5;0.2;; 1; 3;0,1,2;; } }\n");
     return file;
   }
-
-  scene::Scene scene_;
-  scene::CharacterFile file_;
 };
 
 // Faces of an inner shell face the shell around it. They must not affect which side of the outer shell is outside.

@@ -5,33 +5,25 @@
 #include <string>
 #include <vector>
 
-#include "film/environment/actor.hpp"
-#include "support/small_character.hpp"
-#include "support/test_folder.hpp"
+#include "environment/rod_scene.hpp"
 
 namespace weft::environment {
 namespace {
 
-class Stance : public support::TestFolder {};
+class Stance : public RodScene {};
 
 // The clip has one pose and thus no rate of keys. The body must still get several keys.
 TEST_F(Stance, BodyAtRestChangesToAClipOfOnePose) {
   std::string text = support::rod_file();
   const std::string keys = "2; 2; 0;3;0.0,1.0,0.0;;, 10;3;1.0,1.0,0.0;;;";
   text.replace(text.find(keys), keys.size(), "2; 1; 0;3;1.0,1.0,0.0;;;");
-  support::write_bytes(folder_ / "rod.x", text);
-  scene::Scene scene;
-  scene.time.duration = 2;
-  scene::Character& character = scene.characters.emplace_back();
-  character.name = "rod";
-  character.dressing = 0.5;
-  character.blend = 0.5;
-  scene::CharacterFile file;
-  file.path = folder_ / "rod.x";
-  file.clip = "Wave";
-  file.stance = scene::Stance::rest;
-  character.source = file;
-  const Actor actor = make_actor(scene, character);
+  support::write_bytes(file_.path, text);
+  scene_.time.duration = 2;
+  character_.dressing = 0.5;
+  character_.blend = 0.5;
+  file_.clip = "Wave";
+  file_.stance = scene::Stance::rest;
+  const Actor actor = make();
   const auto moved = [&](double t) {
     std::vector<Vec3> x(actor.mesh.positions.size());
     actor.keys.at(t, x);
@@ -42,7 +34,7 @@ TEST_F(Stance, BodyAtRestChangesToAClipOfOnePose) {
   EXPECT_LT(moved(0.48), 1e-6);
   EXPECT_NEAR(moved(0.75), 0.5, 0.02) << "half of the change";
   EXPECT_NEAR(moved(1.5), 1, 1e-5);
-  EXPECT_EQ(count_key_frames(scene, character).bytes, actor.keys.bytes());
+  EXPECT_EQ(count_key_frames(scene_, character_).bytes, actor.keys.bytes());
 }
 
 // With a repeated clip, the stance must have the pose at the start of the round in which the clip begins, not at the
@@ -51,21 +43,15 @@ TEST_F(Stance, WithRaisedArmsHasThePoseOfTheRoundInWhichTheClipStarts) {
   std::string text = support::rod_file();
   const std::string along = "10;3;1.0,1.0,0.0";
   text.replace(text.find(along), along.size(), "10;3;0.0,2.0,0.0");  // moves up by 1 m
-  support::write_bytes(folder_ / "rod.x", text);
-  scene::Scene scene;
-  scene.time.duration = 2;
-  scene::Character& character = scene.characters.emplace_back();
-  character.name = "rod";
-  character.start = 1.5;
-  character.dressing = 0.5;
-  character.blend = 0.5;
-  scene::CharacterFile file;
-  file.path = folder_ / "rod.x";
-  file.clip = "Wave";
-  file.loop = true;
-  file.stance_arms = 45;
-  character.source = file;
-  const Actor actor = make_actor(scene, character);
+  support::write_bytes(file_.path, text);
+  scene_.time.duration = 2;
+  character_.start = 1.5;
+  character_.dressing = 0.5;
+  character_.blend = 0.5;
+  file_.clip = "Wave";
+  file_.loop = true;
+  file_.stance_arms = 45;
+  const Actor actor = make();
   double top = 0;
   for (const Vec3& x : actor.mesh.positions) top = std::max(top, x.z());
   EXPECT_NEAR(top, 2.5, 1e-5) << "half of the second round";

@@ -4,14 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "film/environment/actor.hpp"
-#include "support/small_character.hpp"
-#include "support/test_folder.hpp"
+#include "environment/rod_scene.hpp"
 
 namespace weft::environment {
 namespace {
 
-class TravelOfAMotion : public support::TestFolder {};
+class TravelOfAMotion : public RodScene {};
 
 /// A skeleton of hips, spine and left leg, which stands still.
 std::string one_leg() {
@@ -27,18 +25,11 @@ std::string one_leg() {
 // Without legs, the ratio of leg lengths is undefined. The distance from hips to spine replaces it: 1 m in the body, 5
 // in the motion. The travel of the clip at this speed and that of the body must be scaled alike.
 TEST_F(TravelOfAMotion, MovesABodyWithoutLegs) {
-  support::write_bytes(folder_ / "rod.x", support::rod_file());
   support::write_bytes(folder_ / "stand.bvh", one_leg());
-  scene::Scene scene;
-  scene.time.duration = 2;
-  scene::Character& character = scene.characters.emplace_back();
-  character.name = "rod";
-  scene::CharacterFile file;
-  file.path = folder_ / "rod.x";
-  file.motion = folder_ / "stand.bvh";
-  file.travel = {scene::Travel::Kind::speed, 1.5};
-  character.source = file;
-  const Actor actor = make_actor(scene, character);
+  scene_.time.duration = 2;
+  file_.motion = folder_ / "stand.bvh";
+  file_.travel = {scene::Travel::Kind::speed, 1.5};
+  const Actor actor = make();
   std::vector<Vec3> start(actor.mesh.positions.size()), end(start.size());
   actor.keys.at(0, start);
   actor.keys.at(1, end);
@@ -46,14 +37,10 @@ TEST_F(TravelOfAMotion, MovesABodyWithoutLegs) {
 }
 
 TEST_F(TravelOfAMotion, NeedsAClip) {
-  scene::Scene scene;
-  scene::Character& character = scene.characters.emplace_back();
-  scene::CharacterFile file;
-  file.path = folder_ / "statue.obj";
-  support::write_bytes(file.path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  file.travel = {scene::Travel::Kind::speed, 1.5};
-  character.source = file;
-  const std::vector<std::string> warnings = make_actor(scene, character).warnings;
+  file_.path = folder_ / "statue.obj";
+  support::write_bytes(file_.path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  file_.travel = {scene::Travel::Kind::speed, 1.5};
+  const std::vector<std::string> warnings = make().warnings;
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].find("has no clip that could travel; it stands still"), std::string::npos) << warnings[0];
 }
