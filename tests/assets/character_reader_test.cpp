@@ -5,12 +5,10 @@
 #include <assimp/material.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -19,6 +17,7 @@
 #include "assets/small_files.hpp"
 #include "film/assets/character_file.hpp"
 #include "film/character/pose.hpp"
+#include "support/test_folder.hpp"
 
 namespace weft::assets {
 namespace {
@@ -26,7 +25,7 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// Two triangles skinned to two joints, and a mesh without bones at two nodes. aiScene owns and deletes everything.
-class Scenes : public testing::Test {
+class Scenes : public support::TestFolder {
  protected:
   Scenes() {
     root_->mChildren = new aiNode* [3] { hip_, knee_, box_node_ };
@@ -407,15 +406,15 @@ TEST_F(Scenes, ColorsAndPicturesComeWithTheirPlacesForEachTriangle) {
 }
 
 TEST_F(Scenes, TextureCoordinatesAreTransformedAsGltfStates) {
-  const std::filesystem::path file =
-      std::filesystem::path(testing::TempDir()) / ("weft_placed_" + std::to_string(::getpid()) + ".gltf");
+  const std::filesystem::path file = folder_ / "placed.gltf";
   for (const bool turned : {false, true}) {  // whether the picture is rotated by 90 degrees
-    std::ofstream(file) << gltf_tetrahedron_of_integers(
-        R"(,"material":0)", std::string(R"(,"materials":[{"pbrMetallicRoughness":{"baseColorTexture":
+    support::write_bytes(file, gltf_tetrahedron_of_integers(
+                                   R"(,"material":0)",
+                                   std::string(R"(,"materials":[{"pbrMetallicRoughness":{"baseColorTexture":
 {"index":0,"extensions":{"KHR_texture_transform":{"offset":[0.5,0.25],"scale":[0.25,0.5])") +
-                                (turned ? R"(,"rotation":1.5707963267948966)" : "") +
-                                R"(}}}}}],"extensionsUsed":["KHR_texture_transform"],"textures":[{"source":0}],
-"images":[{"uri":"absent.png"}])");
+                                       (turned ? R"(,"rotation":1.5707963267948966)" : "") +
+                                       R"(}}}}}],"extensionsUsed":["KHR_texture_transform"],"textures":[{"source":0}],
+"images":[{"uri":"absent.png"}])"));
     const character::Character body = load_character(file, {}, "here").character;
     ASSERT_EQ(body.coloring.uv.size(), 4U);
     for (std::size_t t = 0; t < 4; ++t)
@@ -426,18 +425,16 @@ TEST_F(Scenes, TextureCoordinatesAreTransformedAsGltfStates) {
         EXPECT_LT((body.coloring.uv[t][k] - placed).norm(), 1e-6);
       }
   }
-  std::filesystem::remove(file);
 }
 
 TEST_F(Scenes, TextureCoordinatesAreFiniteWhateverTheirTransform) {
-  const std::filesystem::path file =
-      std::filesystem::path(testing::TempDir()) / ("weft_turned_" + std::to_string(::getpid()) + ".gltf");
-  std::ofstream(file) << gltf_tetrahedron_of_integers(
-      R"(,"material":0)", R"(,"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"extensions":{
+  const std::filesystem::path file = folder_ / "turned.gltf";
+  support::write_bytes(file, gltf_tetrahedron_of_integers(
+                                 R"(,"material":0)",
+                                 R"(,"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"extensions":{
 "KHR_texture_transform":{"rotation":1e39}}}}}],"extensionsUsed":["KHR_texture_transform"],"textures":[{"source":0}],
-"images":[{"uri":"absent.png"}])");
+"images":[{"uri":"absent.png"}])"));
   const character::Character body = load_character(file, {}, "here").character;
-  std::filesystem::remove(file);
   ASSERT_EQ(body.coloring.uv.size(), 4U);
   for (const auto& corners : body.coloring.uv)
     for (const Vec2& uv : corners) EXPECT_TRUE(uv.allFinite());
@@ -456,18 +453,14 @@ TEST_F(Scenes, PicturesThatCannotBeHadAreLeftOutWithAWarning) {
 }
 
 TEST_F(Scenes, PicturesMayBeNamedPercentEncoded) {
-  const std::filesystem::path folder =
-      std::filesystem::path(testing::TempDir()) / ("weft_encoded_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
   const std::string png = "\x89PNG\r\n\x1a\nand so on";
-  std::ofstream(folder / "my skin.png") << png;
+  support::write_bytes(folder_ / "my skin.png", png);
   auto* material = new aiMaterial;
   const aiString encoded("my%20skin.png");
   material->AddProperty(&encoded, AI_MATKEY_TEXTURE(aiTextureType_DIFFUSE, 0));
   scene_.mMaterials = new aiMaterial* [1] { material };
   scene_.mNumMaterials = 1;
-  const ReadCharacter got = to_character(scene_, folder / "body.gltf");
-  std::filesystem::remove_all(folder);
+  const ReadCharacter got = to_character(scene_, folder_ / "body.gltf");
   EXPECT_TRUE(got.warnings.empty());
   EXPECT_EQ(got.character.coloring.materials.at(0).picture, png);
 }

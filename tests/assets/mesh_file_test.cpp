@@ -2,14 +2,12 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -20,6 +18,7 @@
 #include "physics/mesh/geometry.hpp"
 #include "physics/mesh/ply.hpp"
 #include "support/mesh_measures.hpp"
+#include "support/test_folder.hpp"
 
 namespace weft::assets {
 namespace {
@@ -28,17 +27,10 @@ namespace fs = std::filesystem;
 using Quads = std::vector<mesh::Quad>;
 using Triangles = std::vector<mesh::Triangle>;
 
-/// A folder of its own for each test.
-class MeshFiles : public testing::Test {
+class MeshFiles : public support::TestFolder {
  protected:
-  MeshFiles() : folder_(fs::path(testing::TempDir()) / ("weft_assets_" + std::to_string(::getpid()))) {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~MeshFiles() override { fs::remove_all(folder_); }
-
   fs::path put(const std::string& name, const std::string& bytes) const {
-    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+    support::write_bytes(folder_ / name, bytes);
     return folder_ / name;
   }
 
@@ -61,8 +53,6 @@ class MeshFiles : public testing::Test {
       return text.substr(std::min(start.size(), text.size()));
     }
   }
-
-  fs::path folder_;
 };
 
 mesh::TopologyReport inspected(const LoadedMesh& loaded) {

@@ -70,7 +70,7 @@ enum class Translations { none, of_zero, of_offsets };
 /// Writes BVH text. With all angles at zero, joint j is rotated by zero[j] in the world; children are sorted by
 /// `order`.
 std::string write_bvh(const std::vector<Bone>& bones, const std::vector<Quat>& zero, const std::vector<double>& order,
-                      Translations translations = Translations::none) {
+                      Translations translations) {
   std::string text = "HIERARCHY\n", channels;
   std::vector<std::size_t> written;
   const auto children = [&](int parent) {
@@ -112,6 +112,18 @@ std::string write_bvh(const std::vector<Bone>& bones, const std::vector<Quat>& z
   return text;
 }
 
+/// The same with all joints unrotated, and children in the order of `bones`.
+std::string write_bvh(const std::vector<Bone>& bones, Translations translations = Translations::none) {
+  return write_bvh(bones, std::vector<Quat>(bones.size(), Quat::Identity()), std::vector<double>(bones.size(), 0),
+                   translations);
+}
+
+double max_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double max = 0;
+  for (std::size_t v = 0; v < a.size(); ++v) max = std::max(max, (a[v] - b[v]).norm());
+  return max;
+}
+
 class RetargetedBvh : public support::TestFolder {
  protected:
   /// Positions of the vertices of the body at some keys.
@@ -137,8 +149,7 @@ class RetargetedBvh : public support::TestFolder {
 TEST_F(RetargetedBvh, DoesNotDependOnZeroPosesOrTheOrderOfJoints) {
   const std::vector<Bone> bones = make_bones();
   std::vector<double> order(bones.size(), 0);
-  const std::vector<Vec3> expected =
-      vertices(write_bvh(bones, std::vector<Quat>(bones.size(), Quat::Identity()), order));
+  const std::vector<Vec3> expected = vertices(write_bvh(bones));
   std::mt19937 random(18);
   const auto number = [&] { return random() / double(std::mt19937::max()) * 2 - 1; };
   for (int seed = 0; seed < 20; ++seed) {
@@ -147,11 +158,9 @@ TEST_F(RetargetedBvh, DoesNotDependOnZeroPosesOrTheOrderOfJoints) {
       zero.push_back(Quat(number(), number(), number(), number()).normalized());
       order[b] = number();
     }
-    const std::vector<Vec3> got = vertices(write_bvh(bones, zero, order));
-    double max_distance = 0;
-    for (std::size_t v = 0; v < got.size(); ++v) max_distance = std::max(max_distance, (got[v] - expected[v]).norm());
+    const std::vector<Vec3> got = vertices(write_bvh(bones, zero, order, Translations::none));
     // Tolerance: assimp stores offsets and rotations in single precision; measured: 2e-6 m.
-    EXPECT_LT(max_distance, 1e-4) << seed;
+    EXPECT_LT(max_distance(got, expected), 1e-4) << seed;
   }
 }
 
@@ -159,24 +168,19 @@ TEST_F(RetargetedBvh, DoesNotDependOnZeroPosesOrTheOrderOfJoints) {
 // offsets.
 TEST_F(RetargetedBvh, WithSixChannelsOnEveryJointKeepsItsBones) {
   const std::vector<Bone> bones = make_bones();
-  const std::vector<double> order(bones.size(), 0);
-  const std::vector<Quat> zero(bones.size(), Quat::Identity());
-  const std::vector<Vec3> expected = vertices(write_bvh(bones, zero, order));
+  const std::vector<Vec3> expected = vertices(write_bvh(bones));
   for (const Translations translations : {Translations::of_zero, Translations::of_offsets}) {
-    const std::vector<Vec3> got = vertices(write_bvh(bones, zero, order, translations));
-    double max_distance = 0;
-    for (std::size_t v = 0; v < got.size(); ++v) max_distance = std::max(max_distance, (got[v] - expected[v]).norm());
-    EXPECT_LT(max_distance, 1e-4) << (translations == Translations::of_zero ? "of zero" : "of the offsets");
+    const std::vector<Vec3> got = vertices(write_bvh(bones, translations));
+    EXPECT_LT(max_distance(got, expected), 1e-4)
+        << (translations == Translations::of_zero ? "of zero" : "of the offsets");
   }
 }
 
 TEST_F(RetargetedBvh, MayHaveKeywordsInAnySpellingAndSpacesInNames) {
   std::vector<Bone> bones = make_bones();
-  const std::vector<double> order(bones.size(), 0);
-  const std::vector<Quat> zero(bones.size(), Quat::Identity());
-  const std::vector<Vec3> expected = vertices(write_bvh(bones, zero, order));
+  const std::vector<Vec3> expected = vertices(write_bvh(bones));
   for (Bone& bone : bones) bone.name = "My " + bone.name;
-  std::string text = write_bvh(bones, zero, order);
+  std::string text = write_bvh(bones);
   const std::size_t frames = text.find("Frames:");
   for (std::size_t i = 0; i < frames; ++i)
     if (text.compare(i, 3, "My ") != 0) text[i] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[i])));
@@ -189,22 +193,19 @@ TEST_F(RetargetedBvh, MayHaveKeywordsInAnySpellingAndSpacesInNames) {
 TEST_F(RetargetedBvh, NeedsNoNames) {
   std::vector<Bone> bones = make_bones();
   const std::vector<double> order(bones.size(), 0);
-  const std::vector<Vec3> expected =
-      vertices(write_bvh(bones, std::vector<Quat>(bones.size(), Quat::Identity()), order));
+  const std::vector<Vec3> expected = vertices(write_bvh(bones));
   std::vector<Quat> zero;
   for (std::size_t b = 0; b < bones.size(); ++b) {
     bones[b].name = fmt::format("j{}", b);
     zero.push_back(Quat(1 + static_cast<double>(b % 3), static_cast<double>(b % 5), 2, -1).normalized());
   }
-  const std::vector<Vec3> got = vertices(write_bvh(bones, zero, order));
-  double max_distance = 0;
-  for (std::size_t v = 0; v < got.size(); ++v) max_distance = std::max(max_distance, (got[v] - expected[v]).norm());
-  EXPECT_LT(max_distance, 1e-4);  // tolerance: single precision, as in the first test
+  const std::vector<Vec3> got = vertices(write_bvh(bones, zero, order, Translations::none));
+  EXPECT_LT(max_distance(got, expected), 1e-4);  // tolerance: single precision, as in the first test
 }
 
 TEST_F(RetargetedBvh, PointsLimbsWhereThoseOfTheMotionPointAndBendsThemForward) {
   const std::vector<Bone> bones = make_bones();
-  vertices(write_bvh(bones, std::vector<Quat>(bones.size(), Quat::Identity()), std::vector<double>(bones.size(), 0)));
+  vertices(write_bvh(bones));
   const auto joints = character::find_joints(body_);
   const character::Skeleton skeleton({body_, joints});
   EXPECT_TRUE(result_.warnings.empty()) << result_.warnings.front();
