@@ -78,9 +78,7 @@ TEST_F(BvhChannels, MayBeInOneLineWithTheirJoints) {
 
 TEST_F(BvhChannels, OfSeveralSkeletonsOrWithoutFramesAreRefused) {
   const auto expect_refused = [&](const std::string& from, const std::string& to, const std::string& words) {
-    std::string file = support::walk_file();
-    file.replace(file.find(from), from.size(), to);
-    support::write_bytes(folder_ / "motion.bvh", file);
+    support::write_bytes(folder_ / "motion.bvh", support::replaced(support::walk_file(), from, to));
     support::expect_error(ExitCode::asset_unreadable, words, [&] { load_motion(folder_ / "motion.bvh", {}, "here"); });
   };
   expect_refused("Frames: 2", "frames:0", "motion.bvh: expected at least one frame, got Frames: 0");

@@ -24,9 +24,7 @@ class MaterialSeams : public support::TestFolder {
     const auto insert = [&](const std::string& before, const std::string& text) { rod.insert(rod.find(before), text); };
     const std::string material = "  Material { 1.0;1.0;1.0;1.0;; 0.0; 0.0;0.0;0.0;; 0.0;0.0;0.0;; }\n";
     insert("  XSkinMeshHeader", "  MeshMaterialList { 2; 3; 0,1,1;;\n" + material + material + "  }\n");
-    const std::string spine = "0.0,1.0,0.0,1.0;; } } }";
-    rod.replace(rod.find(spine), spine.size(), "0.0,2.0,0.0,1.0;; } } }");
-    return rod;
+    return support::replaced(rod, "0.0,1.0,0.0,1.0;; } } }", "0.0,2.0,0.0,1.0;; } } }");
   }
 };
 
@@ -55,10 +53,9 @@ TEST_F(MaterialSeams, OfMeshesAreClosed) {
 
 // assimp calls the parts of "Body" in glTF "Body-0" and "Body-1".
 TEST_F(MaterialSeams, LeaveAMeshItsName) {
-  std::string gltf = gltf_tetrahedron();
-  const std::string primitive = R"({"attributes":{"POSITION":0},"indices":1})", start = R"({"primitives":[)";
-  gltf.replace(gltf.find(start), start.size(), R"({"name":"Body","primitives":[)" + primitive + ",");
-  support::write_bytes(folder_ / "body.gltf", gltf);
+  support::write_bytes(folder_ / "body.gltf",
+                       support::replaced(gltf_tetrahedron(), R"({"primitives":[)",
+                                         R"({"name":"Body","primitives":[{"attributes":{"POSITION":0},"indices":1},)"));
   const auto triangles = [&](const std::string& name) {
     const MeshChoice choice{.only = {name}, .without = {}, .elsewhere = {}};
     const auto count =

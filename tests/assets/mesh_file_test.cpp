@@ -165,9 +165,6 @@ TEST_F(MeshFiles, OfGltfFollowTheirNodesAndFaceOutwardThoughMirrored) {
   EXPECT_EQ(Vec3(box.max()), Vec3(1, -1, 1));
 }
 
-std::string with_up_axis(std::string collada, const std::string& up) {
-  return collada.replace(collada.find("Y_UP"), 4, up);
-}
 std::string with_up_axis_of_fbx(std::string fbx, int up) {
   const std::string unit = "\t\tP: \"UnitScaleFactor\"";
   return fbx.insert(fbx.find(unit), "\t\tP: \"UpAxis\", \"int\", \"Integer\", \"\"," + std::to_string(up) + "\n");
@@ -186,17 +183,17 @@ TEST_F(MeshFiles, ThatSayWhichAxisIsUpAreTurnedToThatOfTheScene) {
   using scene::FileUp;
   const auto y = scene::UpAxis::y, z = scene::UpAxis::z;
   const std::string obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
-  const std::vector<Case> cases = {
-      {"y.dae", collada_square(), FileUp::as_file, z, upright},
-      {"y.dae", collada_square(), FileUp::as_file, y, level},
-      {"z.dae", with_up_axis(collada_square(), "Z_UP"), FileUp::as_file, z, level},
-      {"z.dae", with_up_axis(collada_square(), "Z_UP"), FileUp::as_file, y, Vec3(1, 0, -1)},
-      {"y.fbx", with_up_axis_of_fbx(fbx_square(), 1), FileUp::as_file, z, upright},
-      {"z.fbx", with_up_axis_of_fbx(fbx_square(), 2), FileUp::as_file, z, level},
-      {"nothing.fbx", fbx_square(), FileUp::as_file, z, upright},
-      {"a.obj", obj, FileUp::as_file, z, level},
-      {"a.obj", obj, FileUp::y, z, upright},
-      {"a.obj", obj, FileUp::z, y, Vec3(1, 0, -1)}};
+  const std::string z_up_collada = support::replaced(collada_square(), "Y_UP", "Z_UP");
+  const std::vector<Case> cases = {{"y.dae", collada_square(), FileUp::as_file, z, upright},
+                                   {"y.dae", collada_square(), FileUp::as_file, y, level},
+                                   {"z.dae", z_up_collada, FileUp::as_file, z, level},
+                                   {"z.dae", z_up_collada, FileUp::as_file, y, Vec3(1, 0, -1)},
+                                   {"y.fbx", with_up_axis_of_fbx(fbx_square(), 1), FileUp::as_file, z, upright},
+                                   {"z.fbx", with_up_axis_of_fbx(fbx_square(), 2), FileUp::as_file, z, level},
+                                   {"nothing.fbx", fbx_square(), FileUp::as_file, z, upright},
+                                   {"a.obj", obj, FileUp::as_file, z, level},
+                                   {"a.obj", obj, FileUp::y, z, upright},
+                                   {"a.obj", obj, FileUp::z, y, Vec3(1, 0, -1)}};
   for (const Case& c : cases) {
     const LoadedMesh loaded = load_mesh(put(c.name, c.bytes), {1, c.up, c.scene_up}, "here");
     double nearest = 1;
@@ -280,8 +277,7 @@ TEST_F(MeshFiles, OfCompressedGltfAreRefusedByTheNameOfTheCompression) {
 
 TEST_F(MeshFiles, OfGltfWithExtensionsThatTheyRequireAreRefusedUnlessTheyAreOfLooks) {
   const auto with = [](const std::string& name) {
-    const std::string gltf = gltf_tetrahedron_of_integers(), known = "KHR_mesh_quantization";
-    return std::string(gltf).replace(gltf.find(known), known.size(), name);
+    return support::replaced(gltf_tetrahedron_of_integers(), "KHR_mesh_quantization", name);
   };
   EXPECT_EQ(refusal("many.gltf", with("EXT_mesh_gpu_instancing")),
             "expected no extension that the file requires, got EXT_mesh_gpu_instancing, which is not read; export the "
@@ -300,12 +296,11 @@ TEST_F(MeshFiles, OfGltfWithIntegersForFloatsAreConverted) {
       const Vec3& x = loaded.mesh.positions[loaded.mesh.topology.triangles[t][k]];  // y of the file is up, so it is z
       EXPECT_EQ(loaded.uv[t][k], Vec2(x.x(), 1 - x.z()));
     }
-  std::string cut = gltf_tetrahedron_of_integers();
-  cut.replace(cut.find("\"byteOffset\":76"), 15, "\"byteOffset\":80");
+  const std::string cut = support::replaced(gltf_tetrahedron_of_integers(), "\"byteOffset\":76", "\"byteOffset\":80");
   EXPECT_EQ(refusal("cut.gltf", cut), "expected 1 elements of 6 bytes in a buffer, which has 84 bytes");
   // The index of the sparse part is read from the bytes of texture coordinates: 255, 0, 0, 0 are the number 255.
-  std::string astray = gltf_tetrahedron_of_integers();
-  astray.replace(astray.find("\"byteOffset\":72"), 15, "\"byteOffset\":60");
+  const std::string astray =
+      support::replaced(gltf_tetrahedron_of_integers(), "\"byteOffset\":72", "\"byteOffset\":60");
   EXPECT_EQ(refusal("astray.gltf", astray),
             "expected indices of a sparse accessor below 4, its number of elements, got 255");
 }
@@ -323,23 +318,20 @@ TEST_F(MeshFiles, OfObjMayHaveCommentsBehindNumbers) {
 }
 
 TEST_F(MeshFiles, OfGltfHaveTheWeightsOfTheirMorphTargets) {
-  std::string gltf = gltf_tetrahedron();
-  const std::string indices = "\"indices\":1}]";  // a target that doubles the size, at half its weight
-  gltf.replace(gltf.find(indices), indices.size(), R"("indices":1,"targets":[{"POSITION":0}]}],"weights":[0.5])");
+  // A target that doubles the size, at half its weight.
+  const std::string gltf = support::replaced(gltf_tetrahedron(), R"("indices":1}])",
+                                             R"("indices":1,"targets":[{"POSITION":0}]}],"weights":[0.5])");
   EXPECT_NEAR(volume(load("morph.gltf", gltf)), 1.5 * 1.5 * 1.5 / 6, 1e-6);
 }
 
 TEST_F(MeshFiles, OfGltfHaveTheirAttributesInAnyOrder) {
-  std::string gltf = gltf_tetrahedron();
-  const std::string position = "\"POSITION\":0";
-  gltf.replace(gltf.find(position), position.size(), R"("TEXCOORD_1":0,"TEXCOORD_0":0,"POSITION":0)");
+  const std::string gltf =
+      support::replaced(gltf_tetrahedron(), R"("POSITION":0)", R"("TEXCOORD_1":0,"TEXCOORD_0":0,"POSITION":0)");
   EXPECT_NEAR(volume(load("order.gltf", gltf)), 1.0 / 6, 1e-15);
 }
 
 TEST_F(MeshFiles, OfGltfMayLackScenes) {
-  std::string gltf = gltf_tetrahedron();
-  const std::string scenes = R"("scene":0,"scenes":[{"nodes":[0]}],)";
-  gltf.erase(gltf.find(scenes), scenes.size());
+  const std::string gltf = support::replaced(gltf_tetrahedron(), R"("scene":0,"scenes":[{"nodes":[0]}],)", "");
   EXPECT_NEAR(volume(load("library.gltf", gltf)), 1.0 / 6, 1e-15);
 }
 

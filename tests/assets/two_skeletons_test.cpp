@@ -36,16 +36,14 @@ TEST_F(TwoSkeletons, MayHaveJointsWithoutNames) {
 }
 
 TEST_F(TwoSkeletons, MayShareAMesh) {
-  std::string gltf = gltf_of_two_skeletons();
-  gltf.replace(gltf.find(R"("mesh":1)"), 8, R"("mesh":0)");
-  EXPECT_NEAR(width_of(gltf), 6, 1e-6);
+  EXPECT_NEAR(width_of(support::replaced(gltf_of_two_skeletons(), R"("mesh":1)", R"("mesh":0)")), 6, 1e-6);
 }
 
 // The matrix of a joint is then the identity, as it is in the file.
 TEST_F(TwoSkeletons, MayLackBindMatrices) {
   std::string gltf = gltf_of_two_skeletons();
   const std::string matrices = R"(,"inverseBindMatrices":2)";
-  for (int skin = 0; skin < 2; ++skin) gltf.erase(gltf.find(matrices), matrices.size());
+  for (int skin = 0; skin < 2; ++skin) gltf = support::replaced(gltf, matrices, "");
   EXPECT_NEAR(width_of(gltf), 6, 1e-6);
 }
 
@@ -60,11 +58,8 @@ TEST_F(TwoSkeletons, KeepTheNameOfTheFirst) {
 // Two nodes with meshes move by 1 m along x in a second, as the wheels of a car do.
 TEST_F(TwoSkeletons, MayBeReplacedByAnimatedNodesWithEqualNames) {
   std::string gltf = gltf_of_two_skeletons();
-  const auto replace = [&](const std::string& from, const std::string& to) {
-    gltf.replace(gltf.find(from), from.size(), to);
-  };
-  replace(R"("name":"a","mesh":0,"skin":0)", R"("name":"wheel","mesh":0)");
-  replace(R"("name":"b","mesh":1,"skin":1)", R"("name":"wheel","mesh":1)");
+  gltf = support::replaced(gltf, R"("name":"a","mesh":0,"skin":0)", R"("name":"wheel","mesh":0)");
+  gltf = support::replaced(gltf, R"("name":"b","mesh":1,"skin":1)", R"("name":"wheel","mesh":1)");
   gltf.resize(gltf.rfind("]}"));
   gltf += R"(,{"bufferView":1,"byteOffset":12,"componentType":5126,"count":2,"type":"SCALAR","min":[0],"max":[1]},
 {"bufferView":0,"componentType":5126,"count":2,"type":"VEC3"}],

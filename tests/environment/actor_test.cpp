@@ -97,11 +97,8 @@ TEST_F(Acting, WarnsOfALoopThatDoesNotClose) {
   file_.clip = "Wave";
   const Actor actor = make();
   ASSERT_EQ(actor.warnings.size(), 0u) << "moving along is the clip's way";
-  support::write_bytes(folder_ / "rod.x", [] {
-    std::string text = support::rod_file();
-    const std::string level = "10;3;1.0,1.0,0.0";
-    return text.replace(text.find(level), level.size(), "10;3;0.0,1.5,0.0");  // moves up by 0.5 m
-  }());
+  support::write_bytes(file_.path,  // moves up by 0.5 m
+                       support::replaced(support::rod_file(), "10;3;1.0,1.0,0.0", "10;3;0.0,1.5,0.0"));
   ASSERT_EQ(make().warnings.size(), 1u);
   EXPECT_NE(make().warnings[0].find("clip \"Wave\" does not close: its end and its beginning are 0.5 m apart"),
             std::string::npos);
@@ -145,17 +142,13 @@ TEST_F(Acting, KnowsPartsByJointsAndBones) {
 
 /// The rod, with its upper end as a hand of three fingers.
 std::string hand_file() {
-  std::string text = support::rod_file();
-  const auto replace = [&](const std::string& from, const std::string& to) {
-    ASSERT_NE(text.find(from), std::string::npos) << from;
-    text.replace(text.find(from), from.size(), to);
-  };
   const std::string still =
       "{ FrameTransformMatrix { 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0;; } }";
-  replace("Frame Spine {", "Frame LeftHand {");
-  replace("0.0,1.0,0.0,1.0;; } } }",
-          "0.0,1.0,0.0,1.0;; }\n Frame a " + still + " Frame b " + still + " Frame c " + still + " } }");
-  replace("XSkinMeshHeader { 1; 1; 2; }", "XSkinMeshHeader { 1; 1; 4; }");
+  std::string text = support::replaced(support::rod_file(), "Frame Spine {", "Frame LeftHand {");
+  text =
+      support::replaced(text, "0.0,1.0,0.0,1.0;; } } }",
+                        "0.0,1.0,0.0,1.0;; }\n Frame a " + still + " Frame b " + still + " Frame c " + still + " } }");
+  text = support::replaced(text, "XSkinMeshHeader { 1; 1; 2; }", "XSkinMeshHeader { 1; 1; 4; }");
   const std::string offset = "1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,-1.0,0.0,1.0;; }";
   const std::size_t skin = text.find("SkinWeights { \"Spine\"");
   text.replace(skin, text.find('}', skin) + 1 - skin,
@@ -295,9 +288,8 @@ TEST_F(Acting, TakesOverTheMotionOfAnotherFileByTheNamesThatTheSceneGives) {
 }
 
 TEST_F(Acting, PutsABodyWhoseOriginIsInItsMiddleOnTheFloor) {
-  std::string file = support::rod_file();
-  file.replace(file.find("0.0,0.0,0.0,1.0;; }") + 4, 3, "-1.0");
-  support::write_bytes(file_.path, file);
+  support::write_bytes(file_.path,
+                       support::replaced(support::rod_file(), "0.0,0.0,0.0,1.0;; }", "0.0,-1.0,0.0,1.0;; }"));
   support::write_bytes(folder_ / "walk.bvh", support::walk_file());
   file_.motion = folder_ / "walk.bvh";
   file_.joints = {{"Spine", std::nullopt, "Back"}};
@@ -341,9 +333,7 @@ TEST_F(Acting, StandsUpAMotionWhoseFileHasZUp) {
 TEST_F(Acting, WarnsOfSizesAndSpeedsThatNobodyHas) {
   file_.motion = folder_ / "walk.bvh";
   file_.joints = {{"Spine", std::nullopt, "Back"}};
-  std::string fast = support::walk_file();
-  fast.replace(fast.find("0 0 3 "), 6, "0 0 90 ");
-  support::write_bytes(folder_ / "walk.bvh", fast);
+  support::write_bytes(folder_ / "walk.bvh", support::replaced(support::walk_file(), "0 0 3 ", "0 0 90 "));
   const Actor actor = make();
   ASSERT_EQ(actor.warnings.size(), 1u);
   EXPECT_NE(actor.warnings[0].find("it moves at up to 18 m/s; people who run reach 9 m/s"), std::string::npos)

@@ -69,9 +69,7 @@ TEST_F(SameFile, GivesAClothWhatTheBodyThenHasNotWhereTheBodyHadIt) {
 }
 
 TEST_F(SameFile, PutsAClothOnTheFloorWithItsBody) {
-  std::string file = rod_with_dress();
-  file.replace(file.find("0.0,0.0,0.0,1.0;; }") + 4, 3, "-1.0");
-  support::write_bytes(file_.path, file);
+  support::write_bytes(file_.path, support::replaced(rod_with_dress(), "0.0,0.0,0.0,1.0;; }", "0.0,-1.0,0.0,1.0;; }"));
   const std::vector<Vec3> in_file = make().mesh.positions;
   support::write_bytes(folder_ / "walk.bvh", support::walk_file());
   file_.motion = folder_ / "walk.bvh";

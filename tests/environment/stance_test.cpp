@@ -14,10 +14,9 @@ class Stance : public RodScene {};
 
 // The clip has one pose and thus no rate of keys. The body must still get several keys.
 TEST_F(Stance, BodyAtRestChangesToAClipOfOnePose) {
-  std::string text = support::rod_file();
-  const std::string keys = "2; 2; 0;3;0.0,1.0,0.0;;, 10;3;1.0,1.0,0.0;;;";
-  text.replace(text.find(keys), keys.size(), "2; 1; 0;3;1.0,1.0,0.0;;;");
-  support::write_bytes(file_.path, text);
+  support::write_bytes(file_.path,
+                       support::replaced(support::rod_file(), "2; 2; 0;3;0.0,1.0,0.0;;, 10;3;1.0,1.0,0.0;;;",
+                                         "2; 1; 0;3;1.0,1.0,0.0;;;"));
   scene_.time.duration = 2;
   character_.dressing = 0.5;
   character_.blend = 0.5;
@@ -40,10 +39,8 @@ TEST_F(Stance, BodyAtRestChangesToAClipOfOnePose) {
 // With a repeated clip, the stance must have the pose at the start of the round in which the clip begins, not at the
 // end of the clip, 1 m higher.
 TEST_F(Stance, WithRaisedArmsHasThePoseOfTheRoundInWhichTheClipStarts) {
-  std::string text = support::rod_file();
-  const std::string along = "10;3;1.0,1.0,0.0";
-  text.replace(text.find(along), along.size(), "10;3;0.0,2.0,0.0");  // moves up by 1 m
-  support::write_bytes(file_.path, text);
+  support::write_bytes(file_.path,  // moves up by 1 m
+                       support::replaced(support::rod_file(), "10;3;1.0,1.0,0.0", "10;3;0.0,2.0,0.0"));
   scene_.time.duration = 2;
   character_.start = 1.5;
   character_.dressing = 0.5;

@@ -51,6 +51,14 @@ inline void write_bytes(const std::filesystem::path& file, std::string_view byte
   EXPECT_TRUE(out.flush()) << file;
 }
 
+/// The text with the first occurrence of `from` replaced, which must exist.
+inline std::string replaced(std::string text, std::string_view from, std::string_view to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  if (at != std::string::npos) text.replace(at, from.size(), to);
+  return text;
+}
+
 /// Expects that `action` throws weft::Error with this code and with `words` in its text.
 template <class Action>
 void expect_error(ExitCode code, std::string_view words, const Action& action) {
