@@ -21,10 +21,7 @@ std::array<int, 4> painted(const Character& body, std::size_t triangle) {
 
 TEST(Figure, HairIsOnTheHeadShoesAreOnTheFeetAndNothingIsBetween) {
   for (const double height : {1.5, 1.75}) {
-    MannequinBuild build;
-    build.height = height;
-    build.edge_length = 0.03;
-    const Character body = make_mannequin(build);
+    const Character body = make_mannequin({.height = height, .edge_length = 0.03});
     ASSERT_EQ(body.coloring.uv.size(), body.mesh.topology.triangles.size());
     EXPECT_TRUE(body.coloring.covers_look);
     int hair = 0, sole = 0, face = 0, skin = 0;

@@ -18,12 +18,6 @@ const Character& mannequin() {
   return body;
 }
 
-Walk at_speed(double speed) {
-  Walk walk;
-  walk.speed = speed;
-  return walk;
-}
-
 std::size_t keys(const Clip& clip) {
   return clip.channels[0].rotation.times.size();
 }
@@ -33,8 +27,7 @@ std::size_t keys(const Clip& clip) {
 Clip make_stride(const Character& body, double speed) {
   const Physique physique = physique_of(body);
   const Pace pace = pace_of(speed, physique.height);
-  Walk walk = at_speed(speed);
-  walk.distance = 20 * pace.step_length;
+  Walk walk{.speed = speed, .distance = 20 * pace.step_length};
   // The walk adjusts its steps to the distance. Choose the distance for which they have the step length of the pace.
   const StepPlan adjusted = plan_walk(physique, walk);
   walk.distance *= pace.step_length / (adjusted.speed * adjusted.key_time * adjusted.step_keys);
@@ -77,9 +70,7 @@ TEST(Gait, AWalkTooShortForTwoStepsHasShortStepsNotQuickOnes) {
   const Physique physique = physique_of(mannequin());
   for (const double distance : {1e-6, 0.1})
     for (const bool turn_back : {false, true}) {
-      Walk walk = at_speed(1.2);
-      walk.distance = distance;
-      walk.turn_back = turn_back;
+      const Walk walk{.speed = 1.2, .distance = distance, .turn_back = turn_back};
       const StepPlan plan = plan_walk(physique, walk);
       EXPECT_NEAR(plan.key_time * plan.step_keys, pace_of(1.2, physique.height).step_time, 1e-12);
       for (const Channel& channel : make_walk(mannequin(), walk).channels) {
@@ -182,9 +173,7 @@ TEST(Gait, FeetNeitherSlideNorSink) {
 // floor while the foot is set down count too: 5.1 mm at most.
 TEST(Gait, FeetDoNotSlideFromStandingThroughATurnToStanding) {
   for (const double speed : kSpeeds) {
-    Walk walk = at_speed(speed);
-    walk.distance = 2.5;
-    walk.turn_back = true;
+    const Walk walk{.speed = speed, .distance = 2.5, .turn_back = true};
     const FootAtRest worst = contact_of(make_walk(mannequin(), walk), 0);
     EXPECT_LT(worst.slip, 0.006) << speed;
     EXPECT_GT(worst.lowest, -0.003) << speed;
@@ -194,7 +183,7 @@ TEST(Gait, FeetDoNotSlideFromStandingThroughATurnToStanding) {
 /// Flexion of a knee [degrees], negative if it bends forward.
 double flexion(const Clip& clip, std::size_t key, Joint hip) {
   const auto joints = joints_at_key(mannequin(), clip, key);
-  const auto at = [&](std::size_t next) { return Vec3(joints[index_of(hip) + next].translation()); };
+  const auto at = [&](std::size_t next) { return Vec3(joints[joint_index(hip) + next].translation()); };
   const Vec3 thigh = at(1) - at(0), shin = at(2) - at(1);
   // Seen from the left (+x), a shin bent back is turned counter-clockwise relative to the thigh.
   return std::atan2(thigh.cross(shin).x(), thigh.dot(shin)) / kDegree;
@@ -232,10 +221,10 @@ TEST(Gait, KneesBendAsMeasuredOnPeople) {
 }
 
 TEST(Gait, WeightGoesToTheStandingLegBeforeTheFirstStep) {
-  const Clip clip = make_walk(mannequin(), at_speed(1.15));
+  const Clip clip = make_walk(mannequin(), {.speed = 1.15});
   const auto start = places(clip, 0);
   std::size_t lift = 0;
-  const std::size_t foot = index_of(Joint::right_foot);
+  const std::size_t foot = joint_index(Joint::right_foot);
   while (places(clip, lift)[foot].z() < start[foot].z() + 0.05) ++lift;
   const auto then = places(clip, lift);
   EXPECT_GT(then[0].x() - start[0].x(), 0.02);
@@ -249,12 +238,10 @@ TEST(Gait, WeightGoesToTheStandingLegBeforeTheFirstStep) {
 }
 
 TEST(Gait, HeadLeadsTheChestAndTheChestTheHipsIntoATurn) {
-  Walk walk;
-  walk.turn_back = true;
-  const Clip clip = make_walk(mannequin(), walk);
+  const Clip clip = make_walk(mannequin(), {.turn_back = true});
   const auto when_across = [&](Joint joint) {
     for (std::size_t k = 0; k < keys(clip); ++k) {
-      const Vec3 forward = joints_at_key(mannequin(), clip, k)[index_of(joint)].linear() * -Vec3::UnitY();
+      const Vec3 forward = joints_at_key(mannequin(), clip, k)[joint_index(joint)].linear() * -Vec3::UnitY();
       if (forward.y() > 0) return clip.channels[0].rotation.times[k];
     }
     return 0.0;
@@ -304,10 +291,7 @@ TEST(Gait, BodyOfAnyBuildDoesNotCutItselfWhileItWalks) {
 }
 
 TEST(Gait, LegsDoNotCutEachOtherInTheTurn) {
-  Walk walk = at_speed(1.15);
-  walk.distance = 2;
-  walk.turn_back = true;
-  const Clip clip = make_walk(mannequin(), walk);
+  const Clip clip = make_walk(mannequin(), {.speed = 1.15, .distance = 2, .turn_back = true});
   for (std::size_t k = 0; k < keys(clip); k += 6) {
     const auto posed = skinned(mannequin(), joints_at_key(mannequin(), clip, k));
     const support::TestedObject object{"body", true, posed, mannequin().mesh.topology.triangles};
@@ -317,10 +301,7 @@ TEST(Gait, LegsDoNotCutEachOtherInTheTurn) {
 }
 
 TEST(Gait, WalkStartsAndEndsStillAndTurnsRound) {
-  Walk walk;
-  walk.distance = 3;
-  walk.turn_back = true;
-  const Clip clip = make_walk(mannequin(), walk);
+  const Clip clip = make_walk(mannequin(), {.distance = 3, .turn_back = true});
   const std::size_t last = keys(clip) - 1;
   const auto start = places(clip, 0), second = places(clip, 1), end = places(clip, last);
   for (std::size_t j = 0; j < kJointCount; ++j) {

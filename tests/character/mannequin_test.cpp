@@ -25,9 +25,7 @@ const Character& standard(double edge_length = 0.02) {
   static std::map<double, Character> made;
   const auto found = made.find(edge_length);
   if (found != made.end()) return found->second;
-  MannequinBuild build;
-  build.edge_length = edge_length;
-  return made.emplace(edge_length, make_mannequin(build)).first->second;
+  return made.emplace(edge_length, make_mannequin({.edge_length = edge_length})).first->second;
 }
 
 /// Length [m] of the intersection of the mesh with a plane; counts only points for which `take` returns true.
@@ -83,15 +81,13 @@ void expect_whole(const Character& body) {
 // The expected lengths are fractions of the body height, from Drillis & Contini (1966), in Winter, Fig. 4.1.
 TEST(Mannequin, HasPublishedProportionsAtAnyHeight) {
   for (const double h : {1.5, 1.75, 1.95}) {
-    MannequinBuild build;
-    build.height = h;
-    build.edge_length = 0.03;
+    const MannequinBuild build{.height = h, .edge_length = 0.03};
     const Character body = h == MannequinBuild{}.height ? standard(0.03) : make_mannequin(build);
     const auto at = mannequin_joints(build);
-    const auto distance = [&](Joint a, Joint b) { return (at[index_of(a)] - at[index_of(b)]).norm() / h; };
-    EXPECT_NEAR(at[index_of(Joint::left_foot)].z() / h, 0.039, 1e-12);
-    EXPECT_NEAR(at[index_of(Joint::left_lower_leg)].z() / h, 0.285, 1e-12);
-    EXPECT_NEAR(at[index_of(Joint::left_upper_leg)].z() / h, 0.530, 1e-12);
+    const auto distance = [&](Joint a, Joint b) { return (at[joint_index(a)] - at[joint_index(b)]).norm() / h; };
+    EXPECT_NEAR(at[joint_index(Joint::left_foot)].z() / h, 0.039, 1e-12);
+    EXPECT_NEAR(at[joint_index(Joint::left_lower_leg)].z() / h, 0.285, 1e-12);
+    EXPECT_NEAR(at[joint_index(Joint::left_upper_leg)].z() / h, 0.530, 1e-12);
     EXPECT_NEAR(distance(Joint::left_upper_arm, Joint::left_lower_arm), 0.186, 1e-12);
     EXPECT_NEAR(distance(Joint::left_lower_arm, Joint::left_hand), 0.146, 1e-12);
     // The legs slope outward by less than two degrees.
@@ -102,15 +98,15 @@ TEST(Mannequin, HasPublishedProportionsAtAnyHeight) {
     const Box3 box = mesh::bounding_box(body.mesh.positions);
     EXPECT_NEAR(box.min().z() / h, 0, 0.001);
     EXPECT_NEAR(box.max().z() / h, 1, 0.003);
-    const Vec3 along = (at[index_of(Joint::left_hand)] - at[index_of(Joint::left_lower_arm)]).normalized();
+    const Vec3 along = (at[joint_index(Joint::left_hand)] - at[joint_index(Joint::left_lower_arm)]).normalized();
     double finger = 0, heel = -1, toe = 1, shoulder = 0, ball = 0;
     for (const Vec3& p : body.mesh.positions) {
-      if (p.x() > 0.3 * h) finger = std::max(finger, (p - at[index_of(Joint::left_hand)]).dot(along));
+      if (p.x() > 0.3 * h) finger = std::max(finger, (p - at[joint_index(Joint::left_hand)]).dot(along));
       if (p.z() < 0.06 * h) heel = std::max(heel, p.y()), toe = std::min(toe, p.y());
-      if (std::abs(p.x() - at[index_of(Joint::left_upper_arm)].x()) < 0.01 * h) shoulder = std::max(shoulder, p.z());
+      if (std::abs(p.x() - at[joint_index(Joint::left_upper_arm)].x()) < 0.01 * h) shoulder = std::max(shoulder, p.z());
     }
     for (const Vec3& p : body.mesh.positions) {
-      if (p.z() < 0.03 * h && p.x() > 0) ball = std::max(ball, 2 * (p.x() - at[index_of(Joint::left_toes)].x()));
+      if (p.z() < 0.03 * h && p.x() > 0) ball = std::max(ball, 2 * (p.x() - at[joint_index(Joint::left_toes)].x()));
     }
     EXPECT_NEAR(finger / h, 0.108, 0.01);
     EXPECT_NEAR((heel - toe) / h, 0.152, 0.01);
@@ -133,10 +129,7 @@ TEST(Mannequin, GirthsAreThoseOfASlenderWomanAndGrowWithTheBuild) {
       {"thigh", 0.76, 0.48, 0.58, left},   {"calf", 0.34, 0.31, 0.37, left},    {"ankle", 0.12, 0.17, 0.22, left},
       {"neck", 1.51, 0.28, 0.35, all},
   };
-  MannequinBuild heavy;
-  heavy.girth = 1.15;
-  heavy.edge_length = 0.03;
-  const Character heavier = make_mannequin(heavy);
+  const Character heavier = make_mannequin({.girth = 1.15, .edge_length = 0.03});
   for (const Place& place : places) {
     const double length = girth(standard(), Vec3(0, 0, place.height), Vec3::UnitZ(), place.take);
     EXPECT_GT(length, place.least) << place.what;
@@ -213,10 +206,10 @@ TEST(Mannequin, HasAFaceInProfileAndEarsAndFingers) {
   // The hand is thinner between two fingers than on them.
   const BlendedBody surface = mannequin_body({});
   const auto at = mannequin_joints({});
-  const Vec3 along = (at[index_of(Joint::left_hand)] - at[index_of(Joint::left_lower_arm)]).normalized();
+  const Vec3 along = (at[joint_index(Joint::left_hand)] - at[joint_index(Joint::left_lower_arm)]).normalized();
   const Vec3 out(-along.z(), 0, along.x());
   const auto back = [&](double forward) {  // height [m] of the back of the hand, 12 cm beyond the wrist
-    const Vec3 middle = at[index_of(Joint::left_hand)] + 0.12 * along - 0.01 * forward * Vec3::UnitY();
+    const Vec3 middle = at[joint_index(Joint::left_hand)] + 0.12 * along - 0.01 * forward * Vec3::UnitY();
     for (double height = 0.03; height > -0.06; height -= 1e-4)
       if (surface(middle + height * out) < 0) return height;
     return -0.06;
@@ -305,11 +298,9 @@ TEST(Mannequin, LooksTheSameInTheClipThatKeepsItAtRest) {
 }
 
 TEST(Mannequin, IsTheSameEveryTime) {
-  MannequinBuild build;
-  build.edge_length = 0.03;
   const Character& before = standard(0.03);
   make_mannequin({.edge_length = 0.1});  // the last build is kept
-  const Character again = make_mannequin(build);
+  const Character again = make_mannequin({.edge_length = 0.03});
   ASSERT_EQ(again.mesh.positions.size(), before.mesh.positions.size());
   EXPECT_EQ(std::memcmp(again.mesh.positions.data(), before.mesh.positions.data(),
                         again.mesh.positions.size() * sizeof(Vec3)),

@@ -10,10 +10,6 @@ namespace weft::character {
 
 inline const Vec3 kUp = Vec3::UnitZ();  ///< up axis of all bodies in these tests
 
-inline std::size_t index_of(Joint joint) {
-  return static_cast<std::size_t>(joint);
-}
-
 /// Node-to-world transforms at a key of a clip with a rotation for every joint and a position for the hips.
 inline std::vector<Affine> joints_at_key(const Character& body, const Clip& clip, std::size_t key) {
   std::vector<Affine> global(body.nodes.size());

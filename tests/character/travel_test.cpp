@@ -39,6 +39,16 @@ class Travel : public testing::Test {
     return slip;
   }
 
+  /// A clip of the length of `walk_` in the pose of its first keys.
+  Clip standing() const {
+    Clip clip = walk_;
+    for (Channel& channel : clip.channels) {
+      for (Quat& turned : channel.rotation.values) turned = channel.rotation.values.front();
+      for (Vec3& place : channel.position.values) place = channel.position.values.front();
+    }
+    return clip;
+  }
+
   const Character body_ = make_mannequin({.edge_length = 0.1});
   const std::vector<Index> joints_ = find_joints(body_);
   const Rig rig_{body_, joints_};
@@ -99,11 +109,7 @@ TEST_F(Travel, TakesAlongWhatTravelsBesideTheHips) {
 
 // A clip on the spot moves only a node of the head. The hips must travel too, so that the head does not leave the body.
 TEST_F(Travel, MovesTheHipsIfOnlyNodesBelowThemTravel) {
-  Clip standing_clip = walk_;
-  for (Channel& channel : standing_clip.channels) {
-    for (Quat& turned : channel.rotation.values) turned = channel.rotation.values.front();
-    for (Vec3& place : channel.position.values) place = channel.position.values.front();
-  }
+  Clip standing_clip = standing();
   const Index head = joints_[joint_index(Joint::head)];
   const Vec3 neck = body_.nodes[head].local.translation();
   for (Channel& channel : standing_clip.channels)
@@ -127,11 +133,7 @@ TEST_F(Travel, OfAClipLastsLongerThanItsKeys) {
 }
 
 TEST_F(Travel, GoesAheadWhereNoFeetTell) {
-  Clip standing_clip = walk_;
-  for (Channel& channel : standing_clip.channels) {
-    for (Quat& turned : channel.rotation.values) turned = channel.rotation.values.front();
-    for (Vec3& place : channel.position.values) place = channel.position.values.front();
-  }
+  const Clip standing_clip = standing();
   const TravelResult traveled = set_travel_speed(rig_, standing_clip, 0.5, kUp);
   EXPECT_EQ(traveled.feet, 0);
   const Vec3 displacement = hips(traveled.clip, standing_clip.duration) - hips(traveled.clip, 0);

@@ -20,6 +20,12 @@ namespace {
 
 class WearerBodies : public support::TestFolder {};
 
+/// A scene with the mannequin at rest. `more`: further keys of the character.
+scene::Scene scene_of_mannequin(const std::string& more = {}) {
+  return support::scene_of_text(
+      "[[character]]\nname = 'model'\nsource = 'mannequin'\nedge_length = 0.05\nstance = 'rest'\nblend = 1\n" + more);
+}
+
 std::string matrix(const std::string& translation) {
   return "1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0," + translation + ",1.0;;";
 }
@@ -95,8 +101,7 @@ TEST(MannequinAsWearer, NeedsHardlyAnyChangeOfThePatternsThatAreDrawnForIt) {
 // The top of the T-shirt starts 6 cm above the neck, that of the skirt 4 cm above the waist. A scale of 1.2 makes these
 // distances longer by a fifth. If it were about the floor, it would lift both tops by more than 20 cm.
 TEST(MannequinAsWearer, HasAScaledGarmentAtItsNeckOrWaistIfItIsFitted) {
-  const scene::Scene scene = support::scene_of_text(
-      "[[character]]\nname = 'model'\nsource = 'mannequin'\nedge_length = 0.05\nstance = 'rest'\nblend = 1\n");
+  const scene::Scene scene = scene_of_mannequin();
   Wearers wearers(scene);
   for (const char* name : {"tshirt", "skirt"}) {
     scene::Cloth cloth;
@@ -114,9 +119,7 @@ TEST(MannequinAsWearer, HasAScaledGarmentAtItsNeckOrWaistIfItIsFitted) {
 
 // The wearer stands 2 m beside the origin and is turned, so that its left is not along x.
 TEST_F(WearerBodies, AreTheMiddleOfGarmentsThatStartScaled) {
-  const scene::Scene scene = support::scene_of_text(
-      "[[character]]\nname = 'model'\nsource = 'mannequin'\nedge_length = 0.05\nstance = 'rest'\nblend = 1\n"
-      "position = [2, 0, 0]\nrotation = [0, 0, 30]\n");
+  const scene::Scene scene = scene_of_mannequin("position = [2, 0, 0]\nrotation = [0, 0, 30]\n");
   Wearers wearers(scene);
   const Eigen::Isometry3d to_own = wearers.of("model", "here").to_world.inverse();
   support::write_bytes(folder_ / "skirt.toml",
@@ -143,8 +146,7 @@ TEST_F(WearerBodies, AreTheMiddleOfGarmentsThatStartScaled) {
 
 // The hips of the mannequin are 0.92 m around. Panels around the torso need a wearer without `fit` too.
 TEST_F(WearerBodies, ThatAreTooNarrowForASkirtAreWarnedOfWithoutFitToo) {
-  const scene::Scene scene = support::scene_of_text(
-      "[[character]]\nname = 'model'\nsource = 'mannequin'\nedge_length = 0.05\nstance = 'rest'\nblend = 1\n");
+  const scene::Scene scene = scene_of_mannequin();
   const std::string outline =
       "around = 'torso'\nposition = [0, 0.55]\npath = 'M -0.3 0 L 0.3 0 L 0.25 0.5 L -0.25 0.5 Z'\n"
       "edges = 'hem left waist right'\n";
