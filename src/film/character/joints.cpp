@@ -13,33 +13,28 @@
 namespace weft::character {
 namespace {
 
-/// A joint and its names in rigs. If a rig has several of these names, the first one in `aliases` counts.
-struct BodyPart {
-  std::string name;
-  std::vector<std::string> aliases;
-};
+/// The names of a joint in rigs. If a rig has several of these names, the first one counts.
+using Aliases = std::vector<std::string>;
 
-// Names in the rigs of Mixamo, Rokoko and MotionBuilder; Rigify; Character Creator; Unreal; Unity, VRM and Bandai;
-// SMPL; CMU as BVH and as Acclaim; 100STYLE and Xsens; Biped, Truebones and Source; Poser and DAZ; MakeHuman;
-// Quaternius; the built-in mannequin.
-const std::vector<BodyPart> kMiddle = {
-    {"Hips", {"hips", "pelvis", "hip"}},
-    {"Spine",
-     {"spine", "abdomen", "lowerback", "spine01", "spine001", "waist", "ab", "abdomenlower", "spine1", "torso"}},
-    {"Chest",
-     {"upperchest", "chest", "spine03", "spine003", "spine3", "spine2", "spine02", "spine1", "thorax", "chestupper"}},
-    {"Neck", {"neck", "neck01", "neck1", "necktwist01", "lowerneck", "necklower", "spine004"}},
-    {"Head", {"head", "spine006"}},
+// The names of the joints of the trunk and of a side, in the order of Joint. They are those of Mixamo, Rokoko and
+// MotionBuilder; Rigify; Character Creator; Unreal; Unity, VRM and Bandai; SMPL; CMU as BVH and as Acclaim; 100STYLE
+// and Xsens; Biped, Truebones and Source; Poser and DAZ; MakeHuman; Quaternius; the built-in mannequin.
+const std::vector<Aliases> kMiddle = {
+    {"hips", "pelvis", "hip"},
+    {"spine", "abdomen", "lowerback", "spine01", "spine001", "waist", "ab", "abdomenlower", "spine1", "torso"},
+    {"upperchest", "chest", "spine03", "spine003", "spine3", "spine2", "spine02", "spine1", "thorax", "chestupper"},
+    {"neck", "neck01", "neck1", "necktwist01", "lowerneck", "necklower", "spine004"},
+    {"head", "spine006"},
 };
-const std::vector<BodyPart> kSides = {
-    {"Shoulder", {"clavicle", "collar", "shoulder", "thorax"}},
-    {"UpperArm", {"upperarm", "arm", "shldr", "shldrbend", "uparm", "upperarm01", "humerus", "shoulder"}},
-    {"LowerArm", {"lowerarm", "forearm", "forearmbend", "lowarm", "lowerarm01", "radius", "elbow"}},
-    {"Hand", {"wrist", "hand", "palm", "palm2", "fist"}},
-    {"UpperLeg", {"upperleg", "upleg", "thigh", "thighbend", "upperleg01", "femur", "hip", "leg"}},
-    {"LowerLeg", {"lowerleg", "lowleg", "calf", "shin", "lowerleg01", "tibia", "knee", "leg"}},
-    {"Foot", {"ankle", "foot"}},
-    {"Toes", {"toes", "toe", "toebase", "toe0", "ball", "forefoot", "foot"}},
+const std::vector<Aliases> kSides = {
+    {"clavicle", "collar", "shoulder", "thorax"},
+    {"upperarm", "arm", "shldr", "shldrbend", "uparm", "upperarm01", "humerus", "shoulder"},
+    {"lowerarm", "forearm", "forearmbend", "lowarm", "lowerarm01", "radius", "elbow"},
+    {"wrist", "hand", "palm", "palm2", "fist"},
+    {"upperleg", "upleg", "thigh", "thighbend", "upperleg01", "femur", "hip", "leg"},
+    {"lowerleg", "lowleg", "calf", "shin", "lowerleg01", "tibia", "knee", "leg"},
+    {"ankle", "foot"},
+    {"toes", "toe", "toebase", "toe0", "ball", "forefoot", "foot"},
 };
 
 /// Whether a word in the name of a node means neither a side nor a joint. Such words occur in Biped, Rigify, Source,
@@ -107,8 +102,8 @@ std::pair<std::string, std::string> side_and_part(const std::string& name) {
   for (const auto& [letters, which] : {std::pair{"left", "Left"}, {"right", "Right"}, {"l", "Left"}, {"r", "Right"}})
     if (side.empty() && part.starts_with(letters)) {
       const std::string rest = part.substr(std::string(letters).size());
-      for (const BodyPart& known : kSides)
-        if (std::ranges::find(known.aliases, rest) != known.aliases.end()) return {which, rest};
+      for (const Aliases& known : kSides)
+        if (std::ranges::find(known, rest) != known.end()) return {which, rest};
     }
   return {side, part};
 }
@@ -292,15 +287,15 @@ std::vector<Index> find_named_joints(std::span<const Node> nodes, const std::vec
       if (active == (is_active.empty() || is_active[n]))
         known.emplace(side_and_part(nodes[n].name), static_cast<Index>(n));
   std::vector<Index> joints;
-  const auto find = [&](const std::string& side, const BodyPart& part) {
-    for (const std::string& alias : part.aliases)
+  const auto find = [&](const std::string& side, const Aliases& aliases) {
+    for (const std::string& alias : aliases)
       if (const auto found = known.find({side, alias}); found != known.end()) return found->second;
     return Index{-1};
   };
-  for (const BodyPart& part : kMiddle) joints.push_back(find("", part));
+  for (const Aliases& aliases : kMiddle) joints.push_back(find("", aliases));
   for (const char* side : {"Left", "Right"}) {
     const std::size_t shoulder = joints.size();
-    for (const BodyPart& part : kSides) joints.push_back(find(side, part));
+    for (const Aliases& aliases : kSides) joints.push_back(find(side, aliases));
     // Resolves ambiguous names. A "shoulder" is the upper arm if no other node is the upper arm. A "foot" is the toes
     // if there is an ankle. A "leg" is the lower leg if no other node is the lower leg.
     if (joints[shoulder + 4] == joints[shoulder + 5]) joints[shoulder + 4] = -1;
