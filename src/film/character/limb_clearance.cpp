@@ -70,15 +70,9 @@ const char* name_of(const LimbClearance::LimbWeights& weights) {
 
 std::vector<LimbClearance::LimbWeights> limb_weights_of(const Rig& rig) {
   const Character& body = rig.character;
-  std::vector<std::uint8_t> limb_of_node(body.nodes.size(), 0);
-  for (std::size_t n = 0; n < limb_of_node.size(); ++n) {
-    const auto own = std::ranges::find(rig.joints, static_cast<Index>(n));
-    if (own != rig.joints.end()) {
-      limb_of_node[n] = kLimbOf[static_cast<std::size_t>(own - rig.joints.begin())];
-    } else if (body.nodes[n].parent >= 0) {
-      limb_of_node[n] = limb_of_node[body.nodes[n].parent];
-    }
-  }
+  std::vector<std::uint8_t> limb_of_node;
+  for (const Index joint : joints_of_nodes(body, rig.joints))
+    limb_of_node.push_back(joint < 0 ? std::uint8_t{0} : kLimbOf[joint]);
   std::vector<LimbClearance::LimbWeights> weights(body.mesh.positions.size(), LimbClearance::LimbWeights{});
   for (std::size_t v = 0; v < weights.size(); ++v)
     for (Index i = body.first_influence[v]; i < body.first_influence[v + 1]; ++i)

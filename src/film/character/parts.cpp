@@ -65,8 +65,7 @@ std::vector<Index> joints_of_part(const std::string& name) {
   return joints;
 }
 
-VertexMask vertices_of(const Character& character, std::span<const Index> nodes, std::span<const Index> joints) {
-  // For each node, the nearest joint at or above it; -1: none.
+std::vector<Index> joints_of_nodes(const Character& character, std::span<const Index> nodes) {
   std::vector<Index> joint_of(character.nodes.size(), -1);
   for (std::size_t n = 0; n < joint_of.size(); ++n) {
     const auto own = std::ranges::find(nodes, static_cast<Index>(n));
@@ -77,6 +76,11 @@ VertexMask vertices_of(const Character& character, std::span<const Index> nodes,
       joint_of[n] = joint_of[parent];
     }
   }
+  return joint_of;
+}
+
+VertexMask vertices_of(const Character& character, std::span<const Index> nodes, std::span<const Index> joints) {
+  const std::vector<Index> joint_of = joints_of_nodes(character, nodes);
   return vertices_weighted_by(character,
                               [&](Index node) { return std::ranges::find(joints, joint_of[node]) != joints.end(); });
 }

@@ -22,6 +22,10 @@ const std::vector<std::string>& part_names();
 /// ignored.
 std::vector<Index> joints_of_part(const std::string& name);
 
+/// For each node of the skeleton, the nearest joint at or above it; -1: none. `nodes`: the node of each of
+/// joint_names(), -1 if there is none.
+std::vector<Index> joints_of_nodes(const Character& character, std::span<const Index> nodes);
+
 /// The vertices with at least half of their weight on the nodes of these joints. A joint has its own node and all
 /// descendants of it, except those that belong to another joint farther down. `nodes`: the node of each of
 /// joint_names(), −1 if there is none.

@@ -34,15 +34,10 @@ Performance::Performance(const Character& character, const Clip& clip, const Pla
   if (playing.stance) shift_ = displacement_between(at_clip_time(playing.timing.start), *playing.stance);
 }
 
-Affine Performance::parent_of(Index node, const Pose& pose) const {
-  const Index parent = character_.nodes[node].parent;
-  return parent < 0 ? Affine::Identity() : global_transforms(character_, pose)[parent];
-}
-
 Vec3 Performance::displacement_between(const Pose& a, const Pose& b) const {
   if (leading_ < 0) return Vec3::Zero();
   const Index node = leading_;
-  const Affine parent_a = parent_of(node, a), parent_b = parent_of(node, b);
+  const Affine parent_a = parent_transform(character_, a, node), parent_b = parent_transform(character_, b, node);
   // The last two terms are exactly 0 if the nodes above this one do not move.
   const Vec3 whole = parent_a.linear() * (b.nodes[node].position - a.nodes[node].position) +
                      (parent_b.linear() - parent_a.linear()) * b.nodes[node].position +
@@ -52,7 +47,7 @@ Vec3 Performance::displacement_between(const Pose& a, const Pose& b) const {
 
 void Performance::translate(Pose& pose, const Vec3& by) const {
   for (const Index node : roots_) {
-    const Vec3 local = parent_of(node, pose).linear().inverse() * by;
+    const Vec3 local = parent_transform(character_, pose, node).linear().inverse() * by;
     if (local.allFinite()) pose.nodes[node].position += local;  // it is infinite if an ancestor has the scale 0
   }
 }

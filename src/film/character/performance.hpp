@@ -48,8 +48,6 @@ class Performance {
 
  private:
   Pose at_clip_time(double t) const;
-  /// Global transform of the parent of a node in a pose.
-  Affine parent_of(Index node, const Pose& pose) const;
   /// Translates a pose by the vector `by` in the world [m].
   void translate(Pose& pose, const Vec3& by) const;
   /// Horizontal displacement of `leading_` from pose a to pose b, in the world [m]; zero without this node.

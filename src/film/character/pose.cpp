@@ -13,10 +13,8 @@ namespace {
 /// Vertices per parallel task. A task takes some hundred microseconds.
 constexpr std::size_t kVerticesPerTask = 2048;
 
-Vec3 interpolate(const Vec3& a, const Vec3& b, double weight) {
-  return a + weight * (b - a);
-}
-double interpolate(double a, double b, double weight) {
+template <class Value>
+Value interpolate(const Value& a, const Value& b, double weight) {
   return a + weight * (b - a);
 }
 Quat interpolate(const Quat& a, const Quat& b, double weight) {
@@ -182,6 +180,11 @@ std::vector<Affine> global_transforms(const Character& character, const Pose& po
     globals.push_back(parent < 0 ? local : globals[parent] * local);
   }
   return globals;
+}
+
+Affine parent_transform(const Character& character, const Pose& pose, Index node) {
+  const Index parent = character.nodes[node].parent;
+  return parent < 0 ? Affine::Identity() : global_transforms(character, pose)[parent];
 }
 
 void skin(const Character& character, const Pose& pose, std::span<Vec3> out) {

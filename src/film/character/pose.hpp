@@ -73,6 +73,9 @@ inline double angle_between(const Vec3& a, const Vec3& b) {
 /// Transforms from node to world, for every node.
 std::vector<Affine> global_transforms(const Character& character, const Pose& pose);
 
+/// Transform from the parent of a node to the world; the identity for a root.
+Affine parent_transform(const Character& character, const Pose& pose, Index node);
+
 /// Computes the positions of the vertices in a pose: adds the morph targets, then applies linear blend skinning.
 /// Parallel over vertices. `out`: one entry per vertex of the mesh.
 void skin(const Character& character, const Pose& pose, std::span<Vec3> out);

@@ -78,9 +78,8 @@ bool same_skeleton(const Rig& a, const Rig& b) {
 
 /// World rotation of the parent of the hips in the rest pose.
 Quat rotation_above_hips(const Rig& rig) {
-  const Index above = rig.character.nodes[rig.joints[joint_index(Joint::hips)]].parent;
-  const Pose rest = rest_pose(rig.character);
-  return above < 0 ? Quat::Identity() : to_placement(global_transforms(rig.character, rest)[above]).rotation;
+  const Index hips = rig.joints[joint_index(Joint::hips)];
+  return to_placement(parent_transform(rig.character, rest_pose(rig.character), hips)).rotation;
 }
 
 /// Pose of the body at one key of the clip.

@@ -86,12 +86,10 @@ class Path {
 
  private:
   void translate_node(Index node, const std::vector<Vec3>& by, Clip& result) const {
-    const Index parent = rig_.character.nodes[node].parent;
     Curve<Vec3> position;
     for (std::size_t k = 0; k < times_.size(); ++k) {
       const Pose pose = pose_at(rig_.character, clip_, times_[k]);
-      Mat3 to_world = Mat3::Identity();
-      if (parent >= 0) to_world = global_transforms(rig_.character, pose)[parent].linear();
+      const Mat3 to_world = parent_transform(rig_.character, pose, node).linear();
       position.times.push_back(times_[k]);
       position.values.emplace_back(pose.nodes[node].position + to_world.inverse() * by[k]);
     }
