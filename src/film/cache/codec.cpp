@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <cstring>
 #include <stdexcept>
-#include <type_traits>
 #include <utility>
 
 #include "core/archive.hpp"
@@ -15,9 +14,6 @@
 
 namespace weft::cache {
 namespace {
-
-template <class Archive>
-constexpr bool kReading = std::is_same_v<Archive, ByteReader>;
 
 // Serialises an enumeration or boolean as one byte. Throws std::runtime_error if the byte exceeds `last`, the largest
 // value of the type.
@@ -52,7 +48,7 @@ void check_finite(double number) {
 template <class Archive>
 void serialize_finite(Archive& archive, double& number) {
   archive.value(number);
-  if constexpr (kReading<Archive>) check_finite(number);
+  if constexpr (Archive::kReads) check_finite(number);
 }
 
 template <class Archive>
@@ -152,7 +148,7 @@ void serialize(Archive& archive, Textures& textures) {
         if (!sized || texture.rgba.size() != 4 * static_cast<std::size_t>(texture.width) * texture.height)
           throw std::runtime_error("a picture has the wrong number of bytes");
         // Only reading sets the pointer. Writing must keep it, because paints find their textures by this pointer.
-        if constexpr (kReading<Archive>) pointer = std::make_shared<const frame::Texture>(std::move(texture));
+        if constexpr (Archive::kReads) pointer = std::make_shared<const frame::Texture>(std::move(texture));
       },
       kMinTextureBytes);
 }
@@ -160,7 +156,7 @@ void serialize(Archive& archive, Textures& textures) {
 template <class Archive>
 void serialize(Archive& archive, frame::Paint& paint, const Textures& textures) {
   std::int32_t number = -1;
-  if constexpr (!kReading<Archive>) {
+  if constexpr (!Archive::kReads) {
     const auto found = std::ranges::find(textures, paint.texture);
     if (found != textures.end()) number = static_cast<std::int32_t>(found - textures.begin());
   }
