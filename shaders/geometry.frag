@@ -52,7 +52,8 @@ void main() {
 #ifdef PICTURED
   vec4 texel = texture(picture, place);
 #ifdef HOLES
-  // The 4x4 thresholds of opacity.hpp, shifted for back faces, so that two layers do not hide each other's holes.
+  // Ordered dithering with 4x4 thresholds (Bayer, "An optimum method for two-level rendition of continuous-tone
+  // pictures", 1973), shifted for back faces, so that two layers do not hide each other's holes.
   const float kOrder[16] = float[](0., 8., 2., 10., 12., 4., 14., 6., 3., 11., 1., 9., 15., 7., 13., 5.);
   ivec2 pixel = ivec2(gl_FragCoord.xy) + (gl_FrontFacing ? 0 : 2) * ivec2(1, 1);
   if (texel.a < (2.0 * kOrder[4 * (pixel.y & 3) + (pixel.x & 3)] + 1.0) / 32.0) discard;

@@ -1,7 +1,6 @@
 // Pictures on surfaces: position, minification, and transparency.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -225,14 +224,6 @@ TEST(Paint, VerticesAreSplitWhereCornersLieElsewhereAndTrianglesSortedByPart) {
       EXPECT_EQ(painted.places[static_cast<std::size_t>(drawn)].cast<double>(), surface.paint_uv[order[t]][k]);
     }
   }
-}
-
-TEST(Paint, ThresholdsOfFourByFourNeighboursAreSpreadEvenly) {
-  std::vector<float> all;
-  for (int y = 5; y < 9; ++y)
-    for (int x = 3; x < 7; ++x) all.push_back(threshold_at(x, y));
-  std::sort(all.begin(), all.end());
-  for (int i = 0; i < 16; ++i) EXPECT_FLOAT_EQ(all[i], (2.0f * static_cast<float>(i) + 1) / 32);
 }
 
 }  // namespace

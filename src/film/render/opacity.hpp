@@ -42,11 +42,4 @@ class Opacity {
   frame::Paint::Wrap wrap_u_, wrap_v_;
 };
 
-/// Ordered dithering: thresholds from 1/32 to 31/32, evenly spread over any 4x4 pixels, so that the fraction of opaque
-/// pixels equals the opacity (Bayer, "An optimum method for two-level rendition of continuous-tone pictures", 1973).
-inline float threshold_at(int x, int y) {
-  constexpr std::uint8_t kOrder[16] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
-  return (2.0f * static_cast<float>(kOrder[4 * (y & 3) + (x & 3)]) + 1.0f) / 32.0f;
-}
-
 }  // namespace weft::render
