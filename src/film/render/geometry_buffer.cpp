@@ -9,17 +9,10 @@ namespace weft::render {
 namespace {
 
 /// Value of the uniform `paint_mode` of geometry.frag: how the picture of an appearance is applied.
-int paint_mode_of(const frame::Appearance& look) {
-  if (!look.paint.texture) return 1;
-  switch (look.paint.alpha) {
-    case frame::Paint::Alpha::ignored:
-      return look.paint.wrap_u == frame::Paint::Wrap::once || look.paint.wrap_v == frame::Paint::Wrap::once ? 3 : 2;
-    case frame::Paint::Alpha::over_color:
-      return 3;
-    case frame::Paint::Alpha::cutout:
-      return 4;
-  }
-  return 1;
+int paint_mode_of(const frame::Paint& paint) {
+  if (!paint.texture) return 1;
+  if (paint.alpha == frame::Paint::Alpha::cutout) return 4;
+  return covers_color(paint) ? 3 : 2;
 }
 
 // Maximum depth offset of refined cloth towards the viewer [m]. Parts of the curved triangles lie behind the simulated
@@ -199,7 +192,7 @@ void GeometryBuffer::draw(const SurfaceBuffers& surface, float number, bool peel
   }
   for (const PaintedRange& range : surface.painted()->ranges) {
     const frame::Appearance& look = *range.look;
-    const GeometryProgram& program = use_for(paint_mode_of(look));
+    const GeometryProgram& program = use_for(paint_mode_of(look.paint));
     const Eigen::Vector3f color = image::linear_from_srgb(look.color).cast<float>();
     const Eigen::Vector3f back = image::linear_from_srgb(look.back_color).cast<float>();
     const bool is_cloth = surface.surface().kind == frame::ObjectKind::cloth;

@@ -72,6 +72,13 @@ PaintedMesh make_painted_mesh(const frame::Surface& surface, ShadedMesh& mesh) {
   return painted;
 }
 
+bool covers_color(const frame::Paint& paint) {
+  using Alpha = frame::Paint::Alpha;
+  using Wrap = frame::Paint::Wrap;
+  return paint.alpha == Alpha::over_color ||
+         (paint.alpha == Alpha::ignored && (paint.wrap_u == Wrap::once || paint.wrap_v == Wrap::once));
+}
+
 Holes::Holes(const PaintedMesh& mesh, std::vector<const Opacity*> opacity)
     : mesh_(&mesh), opacity_(std::move(opacity)) {}
 

@@ -26,6 +26,10 @@ struct PaintedMesh {
 /// at seams, and sorts the triangles by part.
 PaintedMesh make_painted_mesh(const frame::Surface& surface, ShadedMesh& mesh);
 
+/// Whether the picture covers the colour of the surface, which shows beside it and through its transparent parts.
+/// Otherwise, the picture is multiplied by the colour.
+bool covers_color(const frame::Paint& paint);
+
 /// The holes of a painted mesh, for passes on the CPU.
 class Holes {
  public:

@@ -25,23 +25,12 @@ Lanes evaluate(const std::array<Vector3f, 9>& c, int k, const Lanes3& n) {
       .max(0.0f);
 }
 
-bool lies_once(const frame::Paint& paint) {
-  return paint.wrap_u == frame::Paint::Wrap::once || paint.wrap_v == frame::Paint::Wrap::once;
-}
-
-/// Whether the picture covers the colour of the surface, which shows beside it and through its transparent parts (case
-/// 3 of paint_mode_of() in geometry_buffer.cpp). Otherwise, the picture is multiplied by the colour.
-bool covers_color(const frame::Paint& paint) {
-  using Alpha = frame::Paint::Alpha;
-  return paint.alpha == Alpha::over_color || (paint.alpha == Alpha::ignored && lies_once(paint));
-}
-
 }  // namespace
 
 double covered_fraction(const PaintedMesh& painted, const PaintedRange& range, std::span<const Triangle> triangles,
                         std::span<const Vec3> positions) {
   const frame::Paint& paint = range.look->paint;
-  if (!paint.texture || !lies_once(paint)) return 1;
+  if (!paint.texture) return 1;
   const auto is_inside = [](double place, frame::Paint::Wrap wrap) {
     return wrap != frame::Paint::Wrap::once || (place >= 0 && place <= 1);
   };
