@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -15,6 +14,7 @@
 
 #include "core/input_file.hpp"
 #include "film/assets/import.hpp"
+#include "film/assets/source.hpp"
 #include "film/image/picture.hpp"
 
 namespace weft::assets {
@@ -57,10 +57,9 @@ std::vector<fs::path> picture_folders(const fs::path& file) {
     const std::size_t first = folders.size();
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(place.empty() ? "." : place, error)) {
-      std::string name = entry.path().filename().string();
-      const bool own = name == stem || name == stem + ".fbm";
-      std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
-      if (own || name == "textures" || name == "texture" || name == "images" || name == "tex")
+      const std::string name = entry.path().filename().string(), lower = lower_case(name);
+      if (name == stem || name == stem + ".fbm" || lower == "textures" || lower == "texture" || lower == "images" ||
+          lower == "tex")
         folders.push_back(entry.path());
     }
     std::sort(folders.begin() + static_cast<std::ptrdiff_t>(first), folders.end());

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
@@ -54,8 +53,8 @@ void keep_triangles(LoadedMesh& loaded, const std::vector<std::uint8_t>& kept) {
 }
 
 /// Keeps only the vertices that triangles use, in the order of use. `from`: for each vertex, the original vertex whose
-/// colour and groups it gets.
-void keep_vertices(LoadedMesh& loaded, const std::vector<Index>& from) {
+/// colour and groups it gets; empty: itself.
+void keep_vertices(LoadedMesh& loaded, const std::vector<Index>& from = {}) {
   std::vector<Index> renamed(loaded.mesh.positions.size(), -1), kept;
   for (Triangle& t : loaded.mesh.topology.triangles)
     for (Index& v : t) {
@@ -67,9 +66,10 @@ void keep_vertices(LoadedMesh& loaded, const std::vector<Index>& from) {
     }
   LoadedMesh result;
   for (const Index v : kept) {
+    const std::size_t original = at(from.empty() ? v : from[at(v)]);
     result.mesh.positions.push_back(loaded.mesh.positions[at(v)]);
-    if (!loaded.colors.empty()) result.colors.push_back(loaded.colors[at(from[at(v)])]);
-    for (const auto& [name, weights] : loaded.groups) result.groups[name].push_back(weights[at(from[at(v)])]);
+    if (!loaded.colors.empty()) result.colors.push_back(loaded.colors[original]);
+    for (const auto& [name, weights] : loaded.groups) result.groups[name].push_back(weights[original]);
   }
   loaded.mesh.positions = std::move(result.mesh.positions);
   loaded.colors = std::move(result.colors);
@@ -300,9 +300,7 @@ class EdgeCollapser {
     }
     if (collapsed == 0) return 0;
     keep_triangles(loaded_, kept);
-    std::vector<Index> from(loaded_.mesh.positions.size());
-    std::iota(from.begin(), from.end(), 0);
-    keep_vertices(loaded_, from);
+    keep_vertices(loaded_);
     return collapsed;
   }
 
@@ -446,11 +444,7 @@ MendingReport mend_sheet(LoadedMesh& loaded, double flattest) {
     cut_non_manifold_edges(loaded, joints, mended);
     remove_surplus_triangles(loaded, mended);
   }
-  if (!is_sheet || loaded.lost_vertices > 0) {
-    std::vector<Index> from(loaded.mesh.positions.size());
-    std::iota(from.begin(), from.end(), 0);
-    keep_vertices(loaded, from);
-  }
+  if (!is_sheet || loaded.lost_vertices > 0) keep_vertices(loaded);
   // Repeats this, because collapsing and flipping can make other triangles flat.
   for (int round = 0; round < kMaxCollapseRounds; ++round) {
     const std::size_t collapsed = EdgeCollapser(loaded, kHeightMargin * flattest).run();

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "core/error.hpp"
 #include "core/types.hpp"
@@ -17,6 +18,9 @@ inline constexpr std::uintmax_t kMaxMeshFileBytes = std::uintmax_t{256} << 20;
 
 /// Limit of coordinates [m]. A file with a larger coordinate counts as damaged: no scene is a thousand kilometres wide.
 inline constexpr double kMaxCoordinate = 1e6;
+
+/// The text with ASCII letters in lower case.
+std::string lower_case(std::string_view text);
 
 /// The ending of a file name in lower case, with its dot; empty if there is none.
 std::string ending_of(const std::filesystem::path& file);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cstddef>
 #include <set>
@@ -13,17 +12,12 @@
 #include <vector>
 
 #include "core/input_file.hpp"
+#include "film/assets/source.hpp"
 
 namespace weft::assets {
 namespace {
 
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf", kSpace = " \t\r";
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return lower;
-}
 
 std::string_view trimmed(std::string_view text) {
   text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
