@@ -26,14 +26,13 @@ std::vector<Index> joints_of_part(const std::string& name);
 /// joint_names(), -1 if there is none.
 std::vector<Index> joints_of_nodes(const Character& character, std::span<const Index> nodes);
 
-/// The vertices with at least half of their weight on the nodes of these joints. A joint has its own node and all
-/// descendants of it, except those that belong to another joint farther down. `nodes`: the node of each of
-/// joint_names(), −1 if there is none.
+/// The vertices with at least half of their weight on nodes of these joints, as of joints_of_nodes(). `nodes`: as
+/// there.
 VertexMask vertices_of(const Character& character, std::span<const Index> nodes, std::span<const Index> joints);
 
 /// Arms and legs; the trunk is all other parts, with head and shoulders.
 enum class Limb : Index { trunk, left_arm, right_arm, left_leg, right_leg };
-/// Per vertex, the limb that has at least half of its weight, else the trunk. `nodes`: as for vertices_of().
+/// Per vertex, the limb that has at least half of its weight, else the trunk. `nodes`: as for joints_of_nodes().
 std::vector<Limb> limbs_of(const Character& character, std::span<const Index> nodes);
 
 /// The vertices with at least half of their weight on this node and its descendants.
@@ -48,7 +47,7 @@ VertexMask vertices_of_material(const Character& character, Index material);
 void add_followers(Character& character, const Pose& pose, const VertexMask& part, std::span<const Vec3> places);
 
 /// Whether thumb and fingers of a hand move separately: at least three chains of nodes below one of the hands influence
-/// skin. `nodes`: as for vertices_of().
+/// skin. `nodes`: as for joints_of_nodes().
 bool has_fingers(const Character& character, std::span<const Index> nodes);
 
 }  // namespace weft::character
