@@ -7,12 +7,12 @@
 #include "core/memory.hpp"
 #include "core/timer.hpp"
 #include "film/production/scene_simulation.hpp"
-#include "tools/cli/scene_input.hpp"
 
 namespace weft::cli {
 namespace {
 
-// Limit on simulated frames; more frames hardly improve the estimate.
+// Limits on wall time [s] and simulated frames of a trial; more frames hardly improve the estimate.
+constexpr double kMaxTrialSeconds = 5;
 constexpr int kMaxTrialFrames = 10;
 
 std::string duration_text(double seconds) {
@@ -23,10 +23,10 @@ std::string duration_text(double seconds) {
 
 }  // namespace
 
-Estimate estimate_run(const scene::Scene& scene, const render::Settings& settings, double seconds) {
+Estimate estimate_run(const scene::Scene& scene, const render::Settings& settings) {
   Estimate estimate;
   estimate.drawn = scene.frame_count();
-  const int preroll = manifest_of(scene, settings).preroll_frames;
+  const int preroll = scene.preroll_frames();
   estimate.simulated = preroll + scene.frame_count() - 1;
   const WallTimer wall;
   double begin = process_cpu_seconds();
@@ -36,7 +36,7 @@ Estimate estimate_run(const scene::Scene& scene, const render::Settings& setting
 
   begin = process_cpu_seconds();
   const auto enough = [&] {
-    return estimate.trial_frames > 0 && (wall.seconds() > seconds || estimate.trial_frames >= kMaxTrialFrames);
+    return estimate.trial_frames > 0 && (wall.seconds() > kMaxTrialSeconds || estimate.trial_frames >= kMaxTrialFrames);
   };
   // run_preroll() calls its argument before each frame, so no frame has been simulated at the first call.
   int asked = -1;

@@ -25,12 +25,12 @@ struct Estimate {
   double draw_total() const { return draw * drawn; }
 };
 
-/// Simulates frames until `seconds` of wall time have passed since the start of the set-up, but at
-/// least one and at most ten (kMaxTrialFrames), and never more than the run has. Then draws the
+/// Simulates frames until 5 s of wall time have passed since the start of the set-up, but at
+/// least one and at most ten, and never more than the run has. Then draws the
 /// current frame or, if the preroll is not finished, the start of the scene; the picture has motion
 /// blur only if frame 1 was simulated. Frames before the first contact take less time than later
 /// ones, so the true cost may be two to three times the estimate. Throws the same errors as a run.
-Estimate estimate_run(const scene::Scene& scene, const render::Settings& settings, double seconds = 5);
+Estimate estimate_run(const scene::Scene& scene, const render::Settings& settings);
 
 /// Describes the estimate in one line.
 std::string describe(const Estimate& estimate);
