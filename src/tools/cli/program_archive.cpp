@@ -114,8 +114,7 @@ void decompress(const std::string& compressed, const std::function<void(std::str
 }  // namespace
 
 ProgramArchive::ProgramArchive(const fs::path& file)
-    : file_(file),
-      compressed_(read_file(file)),
+    : compressed_(read_file(file)),
       fingerprint_(fmt::format("{:016x}", XXH3_64bits(compressed_.data(), compressed_.size()))) {
   TarHeaders headers;
   try {

@@ -19,7 +19,6 @@ class ProgramArchive {
   void write_tar(const std::filesystem::path& tar) const;
 
  private:
-  std::filesystem::path file_;
   std::string compressed_, fingerprint_;
 };
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "core/error.hpp"
-#include "core/nearest.hpp"
 #include "core/version.hpp"
+#include "tools/cli/option_values.hpp"
 #include "tools/cli/system_info.hpp"
 
 namespace weft::cli {
@@ -25,9 +25,8 @@ std::string counted(std::size_t count, const char* singular, const char* plural)
 void check_camera(const std::vector<std::string>& names, const std::string& camera) {
   if (std::find(names.begin(), names.end(), camera) != names.end()) return;
   if (names.empty()) throw Error(ExitCode::usage, "--camera: the scene names no cameras, got {}", camera);
-  const std::string nearest = nearest_name(camera, names);
   throw Error(ExitCode::usage, "--camera: expected {}, got {}{}", fmt::join(names, " or "), camera,
-              nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
+              did_you_mean(camera, names));
 }
 
 scene::Scene load_scene(const SceneOptions& options) {
