@@ -65,6 +65,11 @@ struct FilmPlan {
     return entries;
   }
 
+  /// What an earlier run has drawn of this film.
+  Drawn find_drawn(const fs::path& meshes) const {
+    return cli::find_drawn(target, wanted, settings, metadata(""), meshes, objects);
+  }
+
   /// Path of the effective scene (checked, with all defaults), beside the output.
   fs::path effective_scene_file() const {
     const fs::path file = target.file(wanted.begin);
@@ -149,12 +154,8 @@ void add_outputs(PathLedger& paths, const FilmPlan& plan, const RunOptions& opti
     if (plan.target.kind == Kind::video) paths.writes("-o", video::partial_name(plan.target.file(0)));
     paths.writes_content("-o, for the effective scene,", plan.effective_scene_file(), plan.scene_text);
   }
-  if (!options.meshes.empty()) {
-    std::vector<fs::path> files;
-    for (const std::string& object : plan.objects)
-      for (fs::path& file : mesh_files(options.meshes, object).names(plan.wanted)) files.push_back(std::move(file));
-    paths.writes("--meshes", options.meshes, files);
-  }
+  if (!options.meshes.empty())
+    paths.writes("--meshes", options.meshes, mesh_files(options.meshes, plan.objects, plan.wanted));
   if (!options.stats.empty()) paths.writes("--stats", options.stats);
   if (!options.log_json.empty() && options.log_json != "-") paths.writes("--log-json", options.log_json);
 }
@@ -411,7 +412,7 @@ ExitCode run(const RunOptions& options) {
   paths.register_output_folder("-o, for its working cache,", cache);
   const bool overwrite = options.common.overwrite;
   if (options.resume && !overwrite && !cache::is_cache(cache) &&
-      is_whole(plan.target, plan.wanted, plan.settings, plan.metadata(""), options.meshes, plan.objects)) {
+      plan.find_drawn(options.meshes).is_whole(plan.wanted)) {
     if (fs::exists(cache)) cache::Lock(cache).remove();  // an earlier run was killed while it removed this cache
     log::info(fmt::format("note: {} is complete already: frames {}", plan.target.text, plan.wanted.text()));
     note_missing_reports(plan, options);
@@ -463,10 +464,9 @@ ExitCode render(const RenderOptions& options) {
   const cache::Reader reader(options.common.scene);
   FilmPlan plan = plan_of(reader, options);
   if (options.resume) {
-    plan.drawn = find_drawn(plan.target, plan.wanted, plan.settings, plan.metadata(""), options.meshes, plan.objects);
-    const auto count = static_cast<int>(plan.drawn.frames.size());
-    const bool whole = count == plan.wanted.count();
-    if (count > 0)
+    plan.drawn = plan.find_drawn(options.meshes);
+    const bool whole = plan.drawn.is_whole(plan.wanted);
+    if (!plan.drawn.frames.empty())
       log::info(fmt::format("note: {} is {}: frames {}", plan.target.text, whole ? "complete already" : "there in part",
                             frames_text({plan.drawn.frames.begin(), plan.drawn.frames.end()})));
     if (whole) {

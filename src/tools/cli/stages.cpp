@@ -139,6 +139,15 @@ FramePattern mesh_files(const std::filesystem::path& folder, const std::string& 
   return {(folder / (object + "_")).string(), 5, ".ply"};
 }
 
+std::vector<std::filesystem::path> mesh_files(const std::filesystem::path& folder,
+                                              const std::vector<std::string>& objects, const FrameRange& frames) {
+  std::vector<std::filesystem::path> files;
+  if (folder.empty()) return files;
+  for (const std::string& object : objects)
+    for (std::filesystem::path& file : mesh_files(folder, object).names(frames)) files.push_back(std::move(file));
+  return files;
+}
+
 void write_meshes(const std::filesystem::path& folder, const frame::FrameSnapshot& snapshot) {
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
     const frame::Surface& surface = *snapshot.surfaces[i];

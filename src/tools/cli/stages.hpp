@@ -69,6 +69,9 @@ std::unique_ptr<FrameWriter> make_writer(const WriterSettings& settings);
 
 /// Names of the meshes of an object: `<folder>/<object>_<frame:05>.ply`.
 FramePattern mesh_files(const std::filesystem::path& folder, const std::string& object);
+/// The meshes of these objects and frames; none if `folder` is empty.
+std::vector<std::filesystem::path> mesh_files(const std::filesystem::path& folder,
+                                              const std::vector<std::string>& objects, const FrameRange& frames);
 
 /// Writes a PLY file for each object of the snapshot. Throws Error(output_failed).
 void write_meshes(const std::filesystem::path& folder, const frame::FrameSnapshot& snapshot);

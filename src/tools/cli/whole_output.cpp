@@ -77,15 +77,6 @@ State state_of(const OutputTarget& target, const FrameRange& frames, const rende
   }
 }
 
-std::vector<fs::path> meshes_of(const FrameRange& frames, const fs::path& folder,
-                                const std::vector<std::string>& objects) {
-  std::vector<fs::path> files;
-  if (folder.empty()) return files;
-  for (const std::string& object : objects)
-    for (fs::path& file : mesh_files(folder, object).names(frames)) files.push_back(std::move(file));
-  return files;
-}
-
 }  // namespace
 
 Drawn find_drawn(const OutputTarget& target, const FrameRange& frames, const render::Settings& settings,
@@ -94,7 +85,7 @@ Drawn find_drawn(const OutputTarget& target, const FrameRange& frames, const ren
   const auto look_at = [&](const FrameRange& part) {
     const State state = state_of(target, part, settings, expected);
     if (state != State::part && state != State::whole) return;
-    const std::vector<fs::path> with = meshes_of(part, meshes, objects);
+    const std::vector<fs::path> with = mesh_files(meshes, objects, part);
     drawn.own.insert(target.file(part.begin));
     drawn.own.insert(with.begin(), with.end());
     if (state == State::part || !std::ranges::all_of(with, is_file)) return;
@@ -106,12 +97,6 @@ Drawn find_drawn(const OutputTarget& target, const FrameRange& frames, const ren
     for (int frame = frames.begin; frame < frames.end; frame += frames.step) look_at({frame, frame + 1, 1});
   }
   return drawn;
-}
-
-bool is_whole(const OutputTarget& target, const FrameRange& frames, const render::Settings& settings,
-              const Metadata& expected, const fs::path& meshes, const std::vector<std::string>& objects) {
-  const Drawn drawn = find_drawn(target, frames, settings, expected, meshes, objects);
-  return static_cast<int>(drawn.frames.size()) == frames.count();
 }
 
 }  // namespace weft::cli
