@@ -6,28 +6,14 @@
 
 #include "core/error.hpp"
 #include "core/input_file.hpp"
-#include "film/image/png.hpp"
 #include "film/scene/document.hpp"
-#include "film/video/decoder.hpp"
+#include "tools/cli/own_files.hpp"
 #include "tools/cli/scene_changes.hpp"
-#include "tools/compare/files.hpp"
 
 namespace weft::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Metadata of a picture or video; empty if it cannot be read.
-KeyedValues keyed_metadata_of(const fs::path& file) {
-  try {
-    if (compare::is_video(file)) return video::Decoder(file).metadata();
-    image::Metadata metadata;
-    image::read_png(file, &metadata);
-    return metadata;
-  } catch (const Error&) {
-    return {};
-  }
-}
 
 /// The effective scene that the run has written beside its output; empty if there is none.
 fs::path effective_scene_file(const fs::path& picture, const std::string& scene) {
@@ -48,7 +34,7 @@ std::string join_some(const std::vector<std::string>& lines) {
 }  // namespace
 
 std::string describe_origin_changes(const fs::path& reference, const fs::path& test) {
-  KeyedValues before = keyed_metadata_of(reference), after = keyed_metadata_of(test);
+  KeyedValues before = metadata_of(reference), after = metadata_of(test);
   if (!before.contains("scene_hash") || !after.contains("scene_hash")) return "";
   if (before["scene_hash"] != after["scene_hash"]) {
     const fs::path old_scene = effective_scene_file(reference, before["scene"]);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <string_view>
 #include <system_error>
 
@@ -26,17 +25,6 @@ bool starts_with_one_of(const fs::path& file, std::initializer_list<std::string>
   return std::ranges::any_of(beginnings, [&](const std::string& each) { return start.starts_with(each); });
 }
 
-/// Metadata of a picture or video; empty if it has none or cannot be read.
-std::map<std::string, std::string> metadata_of(const fs::path& file) {
-  try {
-    if (file.extension() == ".png") return image::read_png_metadata(file);
-    if (file.extension() == ".exr") return image::read_exr_header(file).metadata;
-    return video::Decoder(file).metadata();
-  } catch (const Error&) {
-    return {};
-  }
-}
-
 bool has_entry(const std::map<std::string, std::string>& metadata, const std::string& key, const std::string& value) {
   const auto found = metadata.find(key);
   return found != metadata.end() && found->second == value;
@@ -47,6 +35,16 @@ bool is_of_scene(const std::map<std::string, std::string>& metadata, const std::
 }
 
 }  // namespace
+
+std::map<std::string, std::string> metadata_of(const fs::path& file) {
+  try {
+    if (file.extension() == ".png") return image::read_png_metadata(file);
+    if (file.extension() == ".exr") return image::read_exr_header(file).metadata;
+    return video::Decoder(file).metadata();
+  } catch (const Error&) {
+    return {};
+  }
+}
 
 std::string scene_hash_of(const fs::path& file) {
   return metadata_of(file)["scene_hash"];

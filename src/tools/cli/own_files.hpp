@@ -3,9 +3,13 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 
 namespace weft::cli {
+
+/// Metadata of a picture or video; empty if it has none or cannot be read.
+std::map<std::string, std::string> metadata_of(const std::filesystem::path& file);
 
 /// Hash of the scene that the metadata of a picture or video name; empty if there is none.
 std::string scene_hash_of(const std::filesystem::path& file);
