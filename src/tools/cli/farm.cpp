@@ -42,22 +42,13 @@ void check_slurm_found(const char* program, const ProcessResult& result) {
                 program);
 }
 
-/// Numbers and names of the submitted Slurm jobs, oldest first.
-std::vector<std::pair<std::string, std::string>> read_jobs(const fs::path& folder) {
-  std::vector<std::pair<std::string, std::string>> jobs;
-  std::istringstream in(read_start(folder / "farm/jobs", kMaxTextBytes));
-  for (std::string line; std::getline(in, line);)
-    if (const auto tab = line.find('\t'); tab != std::string::npos)
-      jobs.emplace_back(line.substr(0, tab), line.substr(tab + 1));
-  return jobs;
-}
-
 /// Numbers of the Slurm jobs of this folder that wait or run. Adds to `states` the number of tasks of these jobs in
 /// each state. Throws Error(output_failed) if jobs were submitted and Slurm does not answer.
 std::vector<std::string> active_jobs(const fs::path& folder, std::map<std::string, int>& states) {
-  std::vector<std::string> numbers;
-  for (const auto& [number, name] : read_jobs(folder)) numbers.push_back(number);
-  std::vector<std::string> active;
+  std::vector<std::string> numbers, active;
+  std::istringstream jobs(read_start(folder / "farm/jobs", kMaxTextBytes));  // number, tab and name in each line
+  for (std::string line; std::getline(jobs, line);)
+    if (const auto tab = line.find('\t'); tab != std::string::npos) numbers.push_back(line.substr(0, tab));
   if (numbers.empty()) return active;
   const ProcessResult queue = run_process({"squeue", "--noheader", "--array", "--format=%A %F %T"});
   check_slurm_found("squeue", queue);
