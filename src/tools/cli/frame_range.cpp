@@ -1,8 +1,7 @@
 #include "tools/cli/frame_range.hpp"
 
-#include <charconv>
-
 #include "core/error.hpp"
+#include "tools/cli/option_values.hpp"
 
 namespace weft::cli {
 namespace {
@@ -22,11 +21,8 @@ std::vector<std::string_view> split(std::string_view text) {
 
 std::optional<int> parse_part(std::string_view part, std::string_view whole) {
   if (part.empty()) return std::nullopt;
-  int value = 0;
-  const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-  if (error != std::errc() || end != part.data() + part.size() || value < 0) {
-    throw Error(ExitCode::usage, "--frames: {}, got {}", kExpected, whole);
-  }
+  const auto value = number_in<int>(part);
+  if (!value || *value < 0) throw Error(ExitCode::usage, "--frames: {}, got {}", kExpected, whole);
   return value;
 }
 

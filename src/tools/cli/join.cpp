@@ -3,7 +3,6 @@
 #include "film/video/join.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -15,6 +14,7 @@
 #include "film/video/decoder.hpp"
 #include "film/video/encoder.hpp"
 #include "tools/cli/commands.hpp"
+#include "tools/cli/option_values.hpp"
 #include "tools/cli/own_files.hpp"
 #include "tools/cli/path_ledger.hpp"
 #include "tools/cli/signals.hpp"
@@ -53,11 +53,10 @@ template <class Number>
 Number number(const fs::path& file, const Metadata& metadata, const std::string& key, Number least = 0,
               Number most = std::numeric_limits<Number>::max()) {
   const std::string& text = entry(file, metadata, key);
-  Number value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !(value >= least && value <= most))
+  const auto value = number_in<Number>(text);
+  if (!value || !(*value >= least && *value <= most))
     throw Error(ExitCode::usage, "{}: expected a file drawn by Weft; its {} is '{}'", file.string(), key, text);
-  return value;
+  return *value;
 }
 
 double fps_of(const fs::path& file, const Metadata& metadata) {

@@ -1,23 +1,8 @@
 #include "tools/cli/option_values.hpp"
 
-#include <charconv>
-#include <optional>
-
 #include "core/nearest.hpp"
 
 namespace weft::cli {
-namespace {
-
-// Parses the whole text as a number; nullopt if it is none.
-template <class Number>
-std::optional<Number> number_in(const std::string& text) {
-  Number value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
-}  // namespace
 
 std::string did_you_mean(const std::string& name, std::span<const std::string> known) {
   const std::string nearest = nearest_name(name, known);

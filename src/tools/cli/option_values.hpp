@@ -3,9 +3,13 @@
 #pragma once
 
 #include <array>
+#include <charconv>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -28,6 +32,15 @@ Value parse_choice(const char* option, const std::string& text, const std::array
   }
   throw Error(ExitCode::usage, "{}: expected {}, got {}{}", option, fmt::join(names, " or "), text,
               did_you_mean(text, names));
+}
+
+/// The number that is the whole text; nullopt if it is none.
+template <class Number>
+std::optional<Number> number_in(std::string_view text) {
+  Number value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
 }
 
 int parse_integer(const char* option, const std::string& text, int low, int high);

@@ -6,6 +6,7 @@
 
 #include "core/error.hpp"
 #include "film/video/encoder.hpp"
+#include "tools/cli/option_values.hpp"
 
 namespace weft::cli {
 namespace {
@@ -22,11 +23,9 @@ constexpr std::string_view kFrame = "{frame";
 int parse_digits(std::string_view field, std::string_view text) {
   if (field == "frame") return 1;
   if (field.substr(0, 6) != "frame:") bad_pattern(text);
-  field.remove_prefix(6);
-  int digits = 0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), digits);
-  if (error != std::errc() || end != field.data() + field.size() || digits < 1 || digits > 10) bad_pattern(text);
-  return digits;
+  const auto digits = number_in<int>(field.substr(6));
+  if (!digits || *digits < 1 || *digits > 10) bad_pattern(text);
+  return *digits;
 }
 
 }  // namespace

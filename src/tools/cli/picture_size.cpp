@@ -1,6 +1,5 @@
-#include <charconv>
-
 #include "core/error.hpp"
+#include "tools/cli/option_values.hpp"
 #include "tools/cli/options.hpp"
 
 namespace weft::cli {
@@ -11,15 +10,10 @@ constexpr int kMinPictureSide = 16, kMaxPictureSide = 8192;  // same limits as r
 }  // namespace
 
 PictureSize parse_size(const std::string& text) {
-  const std::size_t cross = text.find('x');
-  PictureSize size;
-  if (cross != std::string::npos) {
-    const char *begin = text.data(), *middle = begin + cross, *end = begin + text.size();
-    const auto width = std::from_chars(begin, middle, size.width);
-    const auto height = std::from_chars(middle + 1, end, size.height);
-    const bool whole = width.ec == std::errc() && width.ptr == middle && height.ec == std::errc() && height.ptr == end;
+  if (const std::size_t cross = text.find('x'); cross != std::string::npos) {
+    const auto width = number_in<int>(text.substr(0, cross)), height = number_in<int>(text.substr(cross + 1));
     const auto good = [](int side) { return side >= kMinPictureSide && side <= kMaxPictureSide; };
-    if (whole && good(size.width) && good(size.height)) return size;
+    if (width && height && good(*width) && good(*height)) return {*width, *height};
   }
   throw Error(ExitCode::usage, "--size: expected WxH in pixels, each from {} to {}, such as 1280x720, got {}",
               kMinPictureSide, kMaxPictureSide, text);
