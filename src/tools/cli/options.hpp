@@ -85,7 +85,7 @@ struct SheetOptions {
   SceneOptions common;           ///< `size`: of each picture on the sheet
   std::filesystem::path output;  ///< empty: output/<scene>.sheet.png
   int count = 12;                ///< maximum number of pictures
-  std::optional<int> columns;    ///< default: 4
+  int columns = 4;
 
   SheetOptions() { common.quality = render::Quality::preview; }
 };

@@ -18,7 +18,6 @@ namespace weft::cli {
 namespace {
 
 constexpr int kPictureWidth = 400;  // [pixels]; four pictures side by side fill a screen
-constexpr int kColumns = 4;
 
 /// Default size of each picture on the sheet, with the aspect ratio of the scene.
 PictureSize small_size(const render::Settings& settings) {
@@ -73,8 +72,7 @@ ExitCode sheet(const SheetOptions& options) {
   stills->set_size(options.common.size.value_or(small_size(stills->settings())));
   const render::Settings& settings = stills->settings();
   const std::vector<int> frames = evenly_spaced(stills->frames(), options.count);
-  const int columns = options.columns.value_or(kColumns);
-  check_sheet_size(*stills, frames, columns);
+  check_sheet_size(*stills, frames, options.columns);
   const auto file = still_file(*stills, options.output, stills->scene().scene + ".sheet.png", options.common.overwrite);
   {
     const auto count = static_cast<int>(frames.size());
@@ -90,7 +88,7 @@ ExitCode sheet(const SheetOptions& options) {
     }
     Metadata metadata = describe_pictures(stills->scene(), settings, painter->description());
     metadata["frames"] = fmt::format("{}", fmt::join(frames, " "));
-    image::write_png(file, image::contact_sheet(pictures, columns, heading(*stills, frames)), metadata);
+    image::write_png(file, image::contact_sheet(pictures, options.columns, heading(*stills, frames)), metadata);
   }
   log::info(fmt::format("{}: {} of {} frames in {}", file.string(), frames.size(), stills->scene().frame_count,
                         format_duration(timer.seconds())));
