@@ -112,7 +112,7 @@ class Farm {
     for (std::size_t i = 0; i < plan_.jobs.size(); ++i) {
       SweepJob& job = plan_.jobs[i];
       job.drawn = resolve_frames(options_.frames, job.frame_count);
-      plan_.part = std::max(plan_.part, (job.drawn.count() + 999) / 1000);
+      plan_.part = std::max(plan_.part, (job.drawn.count() + kMaxArrayTasks - 1) / kMaxArrayTasks);
       if (!job.equal_job && !job.is_done()) plan_.submitted.push_back(i);
     }
     if (plan_.submitted.empty() && is_reported()) {

@@ -15,9 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Maximum number of tasks in a job array of Slurm: the default MaxArraySize minus one.
-constexpr std::size_t kMaxArrayTasks = 1000;
-
 // Quotes a text as one word of the shell.
 std::string quoted(const std::string& text) {
   std::string word = "'";
@@ -150,7 +147,7 @@ std::string submit_script(const FarmOptions& options, const FarmPlan& plan) {
     const std::size_t base = plan.submitted[at];
     std::vector<std::size_t> offsets;
     std::size_t end = at;
-    for (; end < plan.submitted.size() && plan.submitted[end] - base < kMaxArrayTasks; ++end)
+    for (; end < plan.submitted.size() && plan.submitted[end] - base < std::size_t{kMaxArrayTasks}; ++end)
       offsets.push_back(plan.submitted[end] - base);
     fmt::format_to(out, "submit_task simulate 'simulate {}+' --time={} --array={}{}\nsimulate=$job\n", base,
                    plan.needs.simulate_minutes, array_text(offsets), after);

@@ -11,6 +11,9 @@
 
 namespace weft::cli {
 
+/// Maximum number of tasks in a job array of Slurm: the default MaxArraySize minus one.
+inline constexpr int kMaxArrayTasks = 1000;
+
 /// Resources that a task requests from the scheduler.
 struct Needs {
   int memory = 0;                      ///< [MB]
@@ -22,7 +25,7 @@ struct Needs {
 struct FarmPlan {
   std::vector<SweepJob> jobs;          ///< all runs of the sweep
   std::vector<std::size_t> submitted;  ///< indices of the jobs that are not done yet, ascending; none: only the report
-  int part = 50;                       ///< number of frames per drawing task
+  int part = 1;                        ///< number of frames per drawing task
   std::string archive;  ///< fingerprint of the program archive that tasks unpack; empty: tasks run this program
   Needs needs;
 
