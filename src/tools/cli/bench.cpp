@@ -303,10 +303,7 @@ bench::PeerRun compare_with_peer(const PlannedRun& planned, const BenchOptions& 
   const std::filesystem::path meshes = folder / "meshes";
   std::vector<std::string> arguments{scene.string(), "--end", std::to_string(end)};
   for (const auto* overrides : {&options.overrides, &planned.overrides})
-    for (const std::string& change : *overrides) {
-      arguments.emplace_back("--set");
-      arguments.push_back(change);
-    }
+    for (const std::string& change : *overrides) arguments.insert(arguments.end(), {"--set", change});
   bench::PeerRun result{.size = planned.setting.size};
   const auto run_weft = [&](const std::function<bench::Drawing()>& open_drawing) {
     const bench::SpeedRun run = run_alone(planned, {1, end}, open_drawing, stop);
@@ -331,8 +328,7 @@ bench::PeerRun compare_with_peer(const PlannedRun& planned, const BenchOptions& 
     result.peer_ms = median_of(peer_ms);
     const bench::Drawing write_frame = [&](const frame::FrameSnapshot& snapshot) { write_meshes(meshes, snapshot); };
     result.weft_pairs = count_pairs_after([&] { run_weft([&] { return write_frame; }); });
-    arguments.emplace_back("--meshes");
-    arguments.push_back(meshes.string());
+    arguments.insert(arguments.end(), {"--meshes", meshes.string()});
     result.peer_pairs = count_pairs_after([&] { run_peer(options.peer, arguments, stop); });
   } catch (const std::exception& error) {
     if (stop) throw;

@@ -66,12 +66,9 @@ double run_peer(const std::filesystem::path& peer, const std::vector<std::string
 bench::FramePairs count_pairs(const std::filesystem::path& meshes, const scene::Scene& scene, int end,
                               const std::atomic<bool>& stop) {
   std::vector<std::string> command{judge_program().string(), meshes.string(), "--frames", fmt::format("0:{}", end)};
-  const auto add_obstacle = [&](const std::string& name) {
-    command.emplace_back("--obstacle");
-    command.push_back(name);
-  };
-  for (const scene::Obstacle& obstacle : scene.obstacles) add_obstacle(obstacle.name);
-  for (const scene::Character& character : scene.characters) add_obstacle(character.name);
+  for (const scene::Obstacle& obstacle : scene.obstacles) command.insert(command.end(), {"--obstacle", obstacle.name});
+  for (const scene::Character& character : scene.characters)
+    command.insert(command.end(), {"--obstacle", character.name});
   const std::string output = output_of(command, 1, stop);  // 1: some pairs intersect
   static const std::regex kFrame(R"(frame [0-9]+: ([0-9]+) intersecting pairs)");
   bench::FramePairs pairs;
