@@ -473,10 +473,8 @@ TEST_F(BenchAccuracy, WritesReportTableAndPlots) {
 }
 
 TEST_F(BenchAccuracy, ASceneWithoutAFrameAfterTheStartIsRefused) {
-  const cli::Outcome outcome = cli::run_weft({"bench", "accuracy", "--set", "time.duration=0", "-o", "b"}, folder_);
-  EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_NE(outcome.err.find("time.duration: expected at least one frame after frame 0"), std::string::npos)
-      << outcome.err;
+  expect_exit(cli::run_weft({"bench", "accuracy", "--set", "time.duration=0", "-o", "b"}, folder_), 3,
+              "time.duration: expected at least one frame after frame 0");
   EXPECT_TRUE(std::filesystem::is_empty(folder_));
 }
 

@@ -78,8 +78,7 @@ TEST_F(CachedRun, FourProcessesAtOnceRenderTheQuartersOfOneCache) {
                                                frames, "--size", "64x36", "--quality", "draft", "--progress", "none"},
                                      folder_, 0, Subprocess::Start::fork));
   for (const auto& process : processes) {
-    const Outcome outcome = process->wait();
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    expect_exit(process->wait(), 0);
   }
   expect_same("whole", "parts", ".png", kFrames);
 }
@@ -124,13 +123,11 @@ TEST_F(CachedRun, SimulationGoesOnFromTheMiddleOfItsPreroll) {
 TEST_F(CachedRun, EditedSceneNeverMeetsOldFrames) {
   expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":5"});
   const Outcome edited = weft({"simulate", "s.toml", "--cache", "c", "--resume", "--set", "obstacle.ball.radius=0.11"});
-  EXPECT_EQ(edited.exit_code, 6);
-  EXPECT_TRUE(contains(edited.err, "which has changed since")) << edited.err;
+  expect_exit(edited, 6, "which has changed since");
   EXPECT_TRUE(contains(edited.err, "omit --resume to start again, or undo the change")) << edited.err;
   expect_well({"simulate", "s.toml", "--cache", "c", "--resume"});
-  const Outcome again = weft({"simulate", "s.toml", "--cache", "c"});
-  EXPECT_EQ(again.exit_code, 6);
-  EXPECT_TRUE(contains(again.err, "c: holds a cache already; give --resume to continue it, --overwrite")) << again.err;
+  expect_exit(weft({"simulate", "s.toml", "--cache", "c"}), 6,
+              "c: holds a cache already; give --resume to continue it, --overwrite");
   expect_well({"simulate", "s.toml", "--cache", "c", "--overwrite", "--frames", ":2"});
   EXPECT_EQ(cache::Reader(folder_ / "c").frames().size(), 2u) << "frames of the cache before are left";
 }
@@ -163,8 +160,7 @@ TEST_F(CachedRun, StoredFramesGetTheAngleOfALensForTheSizeOfTheRunThatGoesOn) {
                         "--progress", "none",
                         "--set",      "camera=[{name='v',position=[1,-2,1],target=[0,0,0],focal_length=50}]"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    const Outcome outcome = run_weft(arguments, folder_);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    expect_exit(run_weft(arguments, folder_), 0);
   };
   simulate({"--size", "64x36", "--frames", ":8"});
   simulate({"--size", "36x64", "--frames", ":3", "--resume"});
@@ -184,9 +180,8 @@ TEST_F(CachedRun, FramesThatWereNotDressedYetAreNotDrawn) {
   part.insert(part.end(), {"--frames", ":3"});
   expect_well(part);
   expect_well({"render", "c", "-o", "a.mp4", "--frames", ":3"});
-  const Outcome rest = weft({"render", "c", "-o", "b.mp4", "--frames", "3:8"});
-  EXPECT_EQ(rest.exit_code, 9);
-  EXPECT_TRUE(contains(rest.err, "it has the look from before the scene was changed")) << rest.err;
+  expect_exit(weft({"render", "c", "-o", "b.mp4", "--frames", "3:8"}), 9,
+              "it has the look from before the scene was changed");
   expect_well(again);
   expect_well({"render", "c", "-o", "b.mp4"});
   // After this run, the cache holds all frames, but only the first three have the looks of the scene.
@@ -233,9 +228,7 @@ TEST_F(CachedRun, AnotherBuildDoesNotGoOn) {
   cache::Manifest manifest = cache::Reader(folder_ / "c").manifest();
   manifest.program = "0123456789abcdef";
   support::write_bytes(folder_ / "c/manifest.json", cache::manifest_text(manifest));
-  const Outcome other = weft({"simulate", "s.toml", "--cache", "c", "--resume"});
-  EXPECT_EQ(other.exit_code, 6);
-  EXPECT_TRUE(contains(other.err, "was made by another build of Weft")) << other.err;
+  expect_exit(weft({"simulate", "s.toml", "--cache", "c", "--resume"}), 6, "was made by another build of Weft");
   expect_well({"render", "c", "-o", "c.mp4", "--frames", ":5"});
 }
 
@@ -252,9 +245,7 @@ TEST_F(CachedRun, BrokenCacheIsSaidAndMadeAnew) {
       EXPECT_EQ(render.exit_code, name == std::string("frame_00003.weft") ? 9 : 4) << render.err;
       EXPECT_TRUE(contains(render.err, std::string("c/") + name + ": broken")) << render.err;
     }
-    const Outcome resumed = weft({"simulate", "s.toml", "--cache", "c", "--resume"});
-    EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
-    EXPECT_TRUE(contains(resumed.err, "starting at the beginning")) << resumed.err;
+    expect_exit(weft({"simulate", "s.toml", "--cache", "c", "--resume"}), 0, "starting at the beginning");
     EXPECT_EQ(hash_of_frames("c", kFrames), expected) << name;
   }
 }
@@ -264,9 +255,7 @@ TEST_F(CachedRun, SecondProcessAtTheSamePlaceIsRefused) {
     const cache::Lock cache(folder_ / "c"), working(folder_ / ".a.weft-cache");
     for (const Arguments& arguments :
          {Arguments{"simulate", "s.toml", "--cache", "c"}, Arguments{"run", "s.toml", "-o", "a.mp4"}}) {
-      const Outcome outcome = weft(arguments);
-      EXPECT_EQ(outcome.exit_code, 6);
-      EXPECT_TRUE(contains(outcome.err, "another process writes it")) << outcome.err;
+      expect_exit(weft(arguments), 6, "another process writes it");
     }
   }
   expect_well({"run", "s.toml", "-o", "a.mp4"});
@@ -294,8 +283,7 @@ TEST_F(KilledRun, GoesOnToTheFramesAndMeshesOfTheUninterruptedOne) {
     kill_after(frame);
     EXPECT_FALSE(fs::exists(folder_ / "a.mp4")) << "a half file under the final name";
     EXPECT_TRUE(fs::exists(folder_ / ".a.weft-cache/state.weft"));
-    const Outcome resumed = resume();
-    EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+    expect_exit(resume(), 0);
     EXPECT_EQ(decoded("a.mp4"), whole);
     expect_same("m", "mw", ".ply", 3 * kFrames);
     for (const auto& entry : fs::directory_iterator(folder_))
@@ -307,15 +295,12 @@ TEST_F(KilledRun, GoesOnToTheFramesAndMeshesOfTheUninterruptedOne) {
 
 TEST_F(KilledRun, IsThrownAwayWithANoteByOneThatDoesNotResume) {
   kill_after(5);
-  const Outcome outcome = weft({"run", "s.toml", "-o", "a.mp4", "--meshes", "n"});
-  EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_TRUE(contains(outcome.err, "of an unfinished run are discarded; --resume")) << outcome.err;
+  expect_exit(weft({"run", "s.toml", "-o", "a.mp4", "--meshes", "n"}), 0,
+              "of an unfinished run are discarded; --resume");
 }
 
 TEST_F(KilledRun, WithNothingThereResumeStartsAtTheBeginning) {
-  const Outcome outcome = resume();
-  EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_TRUE(contains(outcome.err, "nothing to resume; starting at the beginning")) << outcome.err;
+  expect_exit(resume(), 0, "nothing to resume; starting at the beginning");
   const auto written = fs::last_write_time(folder_ / "a.mp4");
   fs::create_directory(folder_ / ".a.weft-cache");  // as if the run was killed while it removed the cache
   support::write_bytes(folder_ / ".a.weft-cache/frame_00003.weft", "\x89WEFT\r\n\x1A-");
@@ -331,9 +316,8 @@ TEST_F(KilledRun, WithNothingThereResumeStartsAtTheBeginning) {
 TEST_F(KilledRun, ReplacesOnlyItsOwnOutputsWhenItGoesOn) {
   kill_after(5);
   support::write_bytes(folder_ / "precious.json", "precious");
-  const Outcome other = weft({"run", "s.toml", "-o", "a.mp4", "--meshes", "m", "--resume", "--stats", "precious.json"});
-  EXPECT_EQ(other.exit_code, 6);
-  EXPECT_TRUE(contains(other.err, "precious.json: exists already")) << other.err;
+  expect_exit(weft({"run", "s.toml", "-o", "a.mp4", "--meshes", "m", "--resume", "--stats", "precious.json"}), 6,
+              "precious.json: exists already");
   EXPECT_EQ(support::read_bytes(folder_ / "precious.json"), "precious");
   EXPECT_EQ(resume().exit_code, 0);
 }
@@ -343,9 +327,7 @@ TEST_F(KilledRun, GoesOnWithOtherLooksToTheVideoThatHasThemFromTheStart) {
   kill_after(5);
   Arguments resumed = run;
   resumed.push_back("--resume");
-  const Outcome outcome = weft(resumed);
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_TRUE(contains(outcome.err, "only the look of the scene has changed; its simulation")) << outcome.err;
+  expect_exit(weft(resumed), 0, "only the look of the scene has changed; its simulation");
   const std::string pictures = decoded("a.mp4");
   fs::remove(folder_ / "a.mp4");
   expect_well(run);
@@ -354,10 +336,8 @@ TEST_F(KilledRun, GoesOnWithOtherLooksToTheVideoThatHasThemFromTheStart) {
 
 TEST_F(KilledRun, ThatWasEditedIsNotResumedAndNotLost) {
   kill_after(5);
-  const Outcome edited =
-      weft({"run", "s.toml", "-o", "a.mp4", "--meshes", "m", "--resume", "--set", "obstacle.ball.radius=0.11"});
-  EXPECT_EQ(edited.exit_code, 6);
-  EXPECT_TRUE(contains(edited.err, "which has changed since")) << edited.err;
+  expect_exit(weft({"run", "s.toml", "-o", "a.mp4", "--meshes", "m", "--resume", "--set", "obstacle.ball.radius=0.11"}),
+              6, "which has changed since");
   EXPECT_EQ(resume().exit_code, 0);
 }
 
@@ -370,8 +350,7 @@ TEST_F(CachedRun, InterruptedByCtrlCRunGoesOnToTheWholeVideo) {
   process.send(SIGINT);
   const Outcome interrupted = process.wait();
   if (interrupted.exit_code == 0) GTEST_SKIP() << "it was done before the signal came";
-  EXPECT_EQ(interrupted.exit_code, 75);
-  EXPECT_TRUE(contains(interrupted.err, "the same command with --resume continues from there")) << interrupted.err;
+  expect_exit(interrupted, 75, "the same command with --resume continues from there");
   EXPECT_LT(probe_video(folder_ / "a.mp4").frames, kFrames);
   expect_well({"run", "s.toml", "-o", "a.mp4", "--resume"});
   EXPECT_EQ(decoded("a.mp4"), decoded("whole.mp4"));
@@ -400,14 +379,11 @@ TEST_F(CachedRun, FullDiskEndsASimulationButOnlyTheCacheOfARun) {
     arguments.insert(arguments.end(), common.begin(), common.end());
     return Subprocess(arguments, folder_, bytes).wait();
   };
-  const Outcome simulated = limited({"simulate", "s.toml", "--cache", "c"}, 3000);
-  EXPECT_EQ(simulated.exit_code, 6);
-  EXPECT_TRUE(contains(simulated.err, "cannot be written: File too large")) << simulated.err;
+  expect_exit(limited({"simulate", "s.toml", "--cache", "c"}, 3000), 6, "cannot be written: File too large");
   // The limit of the file size allows pictures of a few kilobytes, but not states.
   const std::string camera = "camera=[{name='v',position=[1,-1,1],target=[0,0,0.2]}]";
   const Outcome run = limited({"run", "s.toml", "-o", std::string("p/") + kPictures, "--set", camera}, 8000);
-  EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_TRUE(contains(run.err, "the run continues, but")) << run.err;
+  expect_exit(run, 0, "the run continues, but");
   EXPECT_EQ(contents("p", ".png").size(), static_cast<std::size_t>(kFrames));
   EXPECT_FALSE(fs::exists(folder_ / "p/.s.weft-cache"));
   // With a computed camera, pictures are drawn from the cache, so the run fails.

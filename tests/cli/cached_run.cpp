@@ -56,8 +56,7 @@ Outcome CachedRun::weft(Arguments arguments) const {
 }
 
 void CachedRun::expect_well(const Arguments& arguments) const {
-  const Outcome outcome = weft(arguments);
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  expect_exit(weft(arguments), 0);
 }
 
 std::map<std::string, std::string> CachedRun::contents(const std::string& folder, const std::string& ending) const {

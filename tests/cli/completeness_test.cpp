@@ -26,9 +26,7 @@ TEST(FramesText, TellsFramesInARowAsARange) {
 class Completeness : public CachedRun {
  protected:
   void expect_not_whole(const Arguments& arguments, const std::string& message) const {
-    const Outcome outcome = weft(arguments);
-    EXPECT_EQ(outcome.exit_code, 9) << outcome.err;
-    EXPECT_TRUE(contains(outcome.err, message)) << outcome.err;
+    expect_exit(weft(arguments), 9, message);
   }
   /// Cuts a file of the cache in half.
   void break_file(const std::string& name) const {
@@ -46,8 +44,7 @@ TEST_F(Completeness, RenderOfAPartTakesTheFramesBeforeItsEndIfTold) {
   expect_not_whole({"thumbnail", "c", "-o", "t.png", "--frame", "8"}, "frame 8 is missing");
   EXPECT_FALSE(fs::exists(folder_ / "all.mp4"));
   const Outcome part = weft({"render", "c", "-o", "part.mp4", "--partial"});
-  EXPECT_EQ(part.exit_code, 0);
-  EXPECT_TRUE(contains(part.err, "frames 8:21 are missing; only 0:8 are used")) << part.err;
+  expect_exit(part, 0, "frames 8:21 are missing; only 0:8 are used");
   EXPECT_EQ(probe_video(folder_ / "part.mp4").frames, 8);
   EXPECT_EQ(probe_video(folder_ / "part.mp4").metadata.at("frames"), "0:8");
 }
@@ -57,9 +54,8 @@ TEST_F(Completeness, WhatIsNoRangeOrNoCacheIsToldApart) {
   EXPECT_EQ(weft({"render", "c", "-o", "d.mp4", "--frames", "5:22"}).exit_code, 2);
   EXPECT_EQ(weft({"render", "c", "-o", "d.mp4", "--frames", ":8", "--camera", "front"}).exit_code, 2);
   EXPECT_EQ(weft({"thumbnail", "c", "-o", "t.png", "--frame", "21"}).exit_code, 2);
-  const Outcome none = weft({"render", "s.toml", "-o", "d.mp4"});
-  EXPECT_EQ(none.exit_code, 4);
-  EXPECT_TRUE(contains(none.err, "s.toml: expected a frame cache, a folder with a manifest.json")) << none.err;
+  expect_exit(weft({"render", "s.toml", "-o", "d.mp4"}), 4,
+              "s.toml: expected a frame cache, a folder with a manifest.json");
 }
 
 TEST_F(Completeness, FramesThatAreMissingInTheMiddleOrBrokenAreNamedBeforeAnythingIsDrawn) {
@@ -78,12 +74,10 @@ TEST_F(Completeness, BrokenFrameDoesNotKeepTheFramesBeforeItFromBeingUsed) {
   expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":8"});
   break_file("c/frame_00005.weft");
   const Outcome part = weft({"render", "c", "-o", "part.mp4", "--partial"});
-  EXPECT_EQ(part.exit_code, 0) << part.err;
-  EXPECT_TRUE(contains(part.err, "only 0:5 are used")) << part.err;
+  expect_exit(part, 0, "only 0:5 are used");
   EXPECT_TRUE(contains(part.err, "the camera is computed without this frame")) << part.err;
   EXPECT_EQ(probe_video(folder_ / "part.mp4").frames, 5);
-  const Outcome exported = run_weft({"export", "c", "--format", "gltf", "-o", "g", "--partial"}, folder_);
-  EXPECT_EQ(exported.exit_code, 0) << exported.err;
+  expect_exit(run_weft({"export", "c", "--format", "gltf", "-o", "g", "--partial"}, folder_), 0);
 }
 
 TEST_F(Completeness, FrameBeforeAPartIsCheckedIfTheMotionNeedsIt) {
@@ -112,9 +106,7 @@ TEST_F(Completeness, RenderResumesToThePicturesAndMeshesOfOneThatWasNotStopped) 
   fs::remove(folder_ / "m/ball_00013.ply");
   const auto drawn = fs::last_write_time(folder_ / "p/00003.png");
   const Arguments again{"render", "c", "-o", kPicturesInP, "--meshes", "m", "--resume"};
-  const Outcome resumed = weft(again);
-  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
-  EXPECT_TRUE(contains(resumed.err, "{frame:05}.png is there in part: frames 3:9, 12, 14\n")) << resumed.err;
+  expect_exit(weft(again), 0, "{frame:05}.png is there in part: frames 3:9, 12, 14\n");
   expect_same("whole", "p", ".png", kFrames);
   expect_same("mw", "m", ".ply", 3 * kFrames);
   EXPECT_EQ(fs::last_write_time(folder_ / "p/00003.png"), drawn) << "a picture that was there was drawn again";
@@ -146,13 +138,9 @@ TEST_F(Completeness, ResumeDoesNotTakeAVideoInAnotherCodecForTheFilm) {
   Arguments render{"render", "c", "-o", "a.mkv", "--frames", ":2", "--resume"};
   expect_well(render);
   render.insert(render.end(), {"--codec", "prores"});
-  const Outcome refused = weft(render);
-  EXPECT_EQ(refused.exit_code, 6) << refused.err;
-  EXPECT_TRUE(contains(refused.err, "a.mkv: exists already")) << refused.err;
+  expect_exit(weft(render), 6, "a.mkv: exists already");
   render.back() = "ffv1";  // the default of this extension
-  const Outcome again = weft(render);
-  EXPECT_EQ(again.exit_code, 0) << again.err;
-  EXPECT_TRUE(contains(again.err, "note: a.mkv is complete already: frames 0:2\n")) << again.err;
+  expect_exit(weft(render), 0, "note: a.mkv is complete already: frames 0:2\n");
 }
 
 TEST_F(Completeness, ResumeOfACompleteOutputSaysWhichReportsAreMissing) {
@@ -162,9 +150,7 @@ TEST_F(Completeness, ResumeOfACompleteOutputSaysWhichReportsAreMissing) {
     expect_well(command);
     Arguments with = command;
     with.insert(with.end(), {"--stats", "a.json"});
-    const Outcome again = weft(with);
-    EXPECT_EQ(again.exit_code, 0);
-    EXPECT_TRUE(contains(again.err, "note: a.json is not written, since nothing is made again")) << again.err;
+    expect_exit(weft(with), 0, "note: a.json is not written, since nothing is made again");
     EXPECT_FALSE(fs::exists(folder_ / "a.json"));
   }
   expect_well({"run", "s.toml", "-o", "c.mp4", "--stats", "c.json"});
@@ -191,9 +177,7 @@ TEST_F(Completeness, RenderDoesNotGoOnWithOtherPictures) {
   const std::string third = support::read_bytes(folder_ / "p/00002.png");
   // A picture of another frame under this name is not overwritten, since it may be the only copy.
   fs::copy_file(folder_ / "p/00003.png", folder_ / "p/00002.png", fs::copy_options::overwrite_existing);
-  const Outcome refused = weft(render);
-  EXPECT_EQ(refused.exit_code, 6);
-  EXPECT_TRUE(contains(refused.err, "p/00002.png: exists already")) << refused.err;
+  expect_exit(weft(render), 6, "p/00002.png: exists already");
   Arguments forced = render;
   forced.push_back("--overwrite");
   expect_well(forced);
@@ -208,8 +192,7 @@ TEST_F(Completeness, RenderDoesNotGoOnWithPicturesDrawnWithAnOptionThatIsNotGive
     with.insert(with.end(), option.begin(), option.end());
     expect_well(with);
     const Outcome again = weft(with), refused = weft(without);
-    EXPECT_EQ(again.exit_code, 0) << again.err;
-    EXPECT_TRUE(contains(again.err, "is complete already: frames 0:2")) << again.err;
+    expect_exit(again, 0, "is complete already: frames 0:2");
     EXPECT_EQ(refused.exit_code, 6) << option[0];
     EXPECT_TRUE(contains(refused.err, option[0] + "/00000.png: exists already")) << refused.err;
   }
@@ -218,9 +201,8 @@ TEST_F(Completeness, RenderDoesNotGoOnWithPicturesDrawnWithAnOptionThatIsNotGive
 TEST_F(Completeness, RenderDoesNotTakeASharpThumbnailForAPictureWithMotionBlur) {
   expect_well({"simulate", "s.toml", "--cache", "c", "--set", "render.motion_blur=180"});
   expect_well({"thumbnail", "c", "--frame", "1", "-o", "p/00001.png"});
-  const Outcome refused = weft({"render", "c", "-o", kPicturesInP, "--frames", ":2", "--resume"});
-  EXPECT_EQ(refused.exit_code, 6) << refused.err;
-  EXPECT_TRUE(contains(refused.err, "p/00001.png: exists already")) << refused.err;
+  expect_exit(weft({"render", "c", "-o", kPicturesInP, "--frames", ":2", "--resume"}), 6,
+              "p/00001.png: exists already");
 }
 
 // The camera is computed: for the thumbnail from frames 0 and 1, for the film from all frames.
@@ -237,29 +219,23 @@ TEST_F(Completeness, RenderDoesNotTakeAThumbnailWithAnotherCameraForAPictureOfTh
 TEST_F(Completeness, PicturesWithTheCameraOfSomeFramesDoNotBecomeAFilmWithOthers) {
   expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":8"});
   const Arguments part{"render", "c", "-o", kPicturesInP, "--frames", ":2", "--resume"};
-  const Outcome drawn = weft(part);
-  EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
-  EXPECT_TRUE(contains(drawn.err, "warning: c: the camera is computed from frames 0:8 of 0:21")) << drawn.err;
+  expect_exit(weft(part), 0, "warning: c: the camera is computed from frames 0:8 of 0:21");
   expect_well(part);
   expect_well({"thumbnail", "c", "--frame", "2", "-o", "t/00002.png"});
   expect_well({"simulate", "s.toml", "--cache", "c", "--resume"});
-  const Outcome refused = weft(part);
-  EXPECT_EQ(refused.exit_code, 6) << refused.err;
-  EXPECT_TRUE(contains(refused.err, "p/00000.png: exists already")) << refused.err;
+  expect_exit(weft(part), 6, "p/00000.png: exists already");
   EXPECT_EQ(weft({"render", "c", "-o", "t/{frame:05}.png", "--frames", "2:3", "--resume"}).exit_code, 6);
   expect_well({"render", "c", "-o", kPicturesInP, "--frames", "2:4"});
-  const Outcome joined = run_weft({"join", "p", "-o", "a.mp4", "--frames", ":4"}, folder_);
-  EXPECT_EQ(joined.exit_code, 2) << joined.err;
-  EXPECT_TRUE(contains(joined.err, "its camera_frames is '', that of p/00000.png is '0:8'")) << joined.err;
+  expect_exit(run_weft({"join", "p", "-o", "a.mp4", "--frames", ":4"}, folder_), 2,
+              "its camera_frames is '', that of p/00000.png is '0:8'");
 }
 
 // The picture of the start shows the scene before untangling and preroll, frame 0 the scene after them.
 TEST_F(Completeness, RenderDoesNotTakeAPictureOfTheStartForFrame0) {
   expect_well({"simulate", "s.toml", "--cache", "c"});
   expect_well({"thumbnail", "s.toml", "--start", "-o", "p/00000.png"});
-  const Outcome refused = weft({"render", "c", "-o", kPicturesInP, "--frames", ":1", "--resume"});
-  EXPECT_EQ(refused.exit_code, 6) << refused.err;
-  EXPECT_TRUE(contains(refused.err, "p/00000.png: exists already")) << refused.err;
+  expect_exit(weft({"render", "c", "-o", kPicturesInP, "--frames", ":1", "--resume"}), 6,
+              "p/00000.png: exists already");
 }
 
 TEST_F(Completeness, VideoThatWasStoppedIsDrawnAnewAndAnotherIsKept) {
@@ -307,14 +283,9 @@ class Joining : public Completeness {
     arguments.insert(arguments.begin(), "join");
     return run_weft(arguments, folder_);
   }
-  void expect_joined(const Arguments& arguments) const {
-    const Outcome outcome = join(arguments);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  }
+  void expect_joined(const Arguments& arguments) const { expect_exit(join(arguments), 0); }
   void expect_refused(const Arguments& arguments, int code, const std::string& message) const {
-    const Outcome outcome = join(arguments);
-    EXPECT_EQ(outcome.exit_code, code) << outcome.err;
-    EXPECT_TRUE(contains(outcome.err, message)) << outcome.err;
+    expect_exit(join(arguments), code, message);
     EXPECT_FALSE(fs::exists(folder_ / "joined.mp4"));
   }
 };
@@ -353,8 +324,7 @@ TEST_F(Joining, OfPicturesIsInTheCodecThatIsAskedFor) {
       words->insert(words->end(), options.begin(), options.end());
     }
     expect_well(render);
-    const Outcome outcome = run_weft(encode, folder_);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    expect_exit(run_weft(encode, folder_), 0);
     EXPECT_EQ(decoded(std::string("e_") + name), decoded(name)) << name;
   }
 }

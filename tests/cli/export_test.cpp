@@ -33,10 +33,7 @@ class ExportCommand : public CachedRun {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_weft(arguments, folder_);
   }
-  void expect_exported(const Arguments& more) const {
-    const Outcome outcome = exported(more);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  }
+  void expect_exported(const Arguments& more) const { expect_exit(exported(more), 0); }
 };
 
 TEST_F(ExportCommand, WritesTheMeshesOfRunAndWhatElseItIsAskedFor) {
@@ -127,9 +124,7 @@ TEST_F(ExportCommand, RefusesWithTheCodesOfTheContract) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
   EXPECT_EQ(gltf({"--partial"}).exit_code, 0);
   const auto first = contents("out", ".glb");
-  const Outcome again = gltf({"--partial"});
-  EXPECT_EQ(again.exit_code, 6);
-  EXPECT_NE(again.err.find("exists already"), std::string::npos) << again.err;
+  expect_exit(gltf({"--partial"}), 6, "exists already");
   EXPECT_EQ(gltf({"--partial", "--overwrite"}).exit_code, 0);
   EXPECT_EQ(contents("out", ".glb"), first);
   EXPECT_EQ(gltf({"--overwrite", "--frames", "0:9"}).exit_code, 9) << "frames that are not there";

@@ -67,10 +67,10 @@ TEST_F(Farms, TasksMakeWhatOneSweepMakes) {
   const Outcome status = farm({"status", "a b"});
   EXPECT_EQ(status.exit_code, 0);
   EXPECT_NE(status.out.find("2 of 2 runs are done"), std::string::npos) << status.out;
-  const Outcome sweep = run_weft({"sweep", "s.toml", "-o", "one", "--set", kRadius, "--size", "64x36", "--quality",
-                                  "draft", "--frames", "0:19:2", "--set", "time.duration=0.8"},
-                                 folder_);
-  EXPECT_EQ(sweep.exit_code, 0) << sweep.err;
+  expect_exit(run_weft({"sweep", "s.toml", "-o", "one", "--set", kRadius, "--size", "64x36", "--quality", "draft",
+                        "--frames", "0:19:2", "--set", "time.duration=0.8"},
+                       folder_),
+              0);
   for (const char* run : {"radius=0.1", "radius=0.11"})
     EXPECT_TRUE(support::read_bytes(folder_ / "one" / run / "s.mp4") ==
                 support::read_bytes(folder_ / "a b" / run / "s.mp4"))
@@ -109,11 +109,11 @@ TEST_F(Farms, FilmsOfAFormerSceneAreNotDone) {
   const Outcome changed = submit();
   ASSERT_EQ(changed.exit_code, 0);
   EXPECT_TRUE(contains(changed.err, "warning: a b/radius=0.1/frames and 1 more folders: expected")) << changed.err;
-  const Outcome refused = with_failing_slurm(
-      "submit s.toml -o 'a b' --set obstacle.ball.radius=0.1,0.11 --size 64x36 --quality draft --frames 0:19:2 "
-      "--part 4 --set time.duration=0.8 --memory 100 --time 10");
-  EXPECT_EQ(refused.exit_code, 6);
-  EXPECT_TRUE(contains(refused.err, "which drawing tasks do not replace")) << refused.err;
+  expect_exit(
+      with_failing_slurm(
+          "submit s.toml -o 'a b' --set obstacle.ball.radius=0.1,0.11 --size 64x36 --quality draft --frames 0:19:2 "
+          "--part 4 --set time.duration=0.8 --memory 100 --time 10"),
+      6, "which drawing tasks do not replace");
   const std::string task = "WEFT_PAUSE=0 sh '" + (folder_ / "a b/farm/task.sh").string() + "'";
   for (const char* run : {"0", "1"})
     EXPECT_EQ(std::system((task + " simulate " + run).c_str()), 0) << log("simulate_0");
@@ -227,9 +227,7 @@ TEST_F(Farms, FailuresOfSlurmAreNoSuccessesAndNoEmptyQueue) {
 
 TEST_F(Farms, NameNoOptionThatTheyLackIfTheFolderHasOtherRuns) {
   EXPECT_EQ(submit().exit_code, 0);
-  const Outcome other = submit({"--camera", "front"});
-  EXPECT_EQ(other.exit_code, 6);
-  EXPECT_TRUE(contains(other.err, "; give the same options or another name\n")) << other.err;
+  expect_exit(submit({"--camera", "front"}), 6, "; give the same options or another name\n");
 }
 
 TEST_F(Farms, RefuseWhatTheyCannotDo) {

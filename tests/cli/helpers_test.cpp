@@ -29,8 +29,7 @@ std::string output_of(const std::string& command) {
 TEST_F(Helpers, EveryTemplateIsASceneWithItsSchemaBesideIt) {
   for (const std::string& name : template_names()) {
     if (name == "ci") continue;  // ci_template_slow.cpp tests it
-    const Outcome made = run_weft({"new", "my " + name, "--template", name}, folder_);
-    EXPECT_EQ(made.exit_code, 0) << made.err;
+    expect_exit(run_weft({"new", "my " + name, "--template", name}, folder_), 0);
     const Outcome checked = run_weft({"check", "my " + name + ".toml"}, folder_);
     EXPECT_EQ(checked.exit_code, 0) << checked.err;
     EXPECT_EQ(checked.out.find("note:"), std::string::npos) << "nothing to doubt: " << checked.out;
@@ -75,8 +74,7 @@ TEST_F(Helpers, TemplateOfARepositoryAddsToOneThatIsThere) {
 TEST_F(Helpers, TemplateOfARepositoryKeepsLinksWhoseTargetsAreMissing) {
   const std::vector<std::string> links{"README.md", ".gitignore", "limits.toml", "weft.schema.json"};
   for (const std::string& link : links) fs::create_symlink("none_" + link, folder_ / link);
-  const Outcome made = run_weft({"new", ".", "--template", "ci"}, folder_);
-  EXPECT_EQ(made.exit_code, 0) << made.err;
+  expect_exit(run_weft({"new", ".", "--template", "ci"}, folder_), 0);
   for (const std::string& link : links) EXPECT_TRUE(fs::is_symlink(folder_ / link)) << link;
   EXPECT_TRUE(fs::exists(folder_ / "PICTURES.md"));
 }
@@ -123,17 +121,14 @@ TEST_F(Helpers, WatchDrawsAgainWhenTheSceneChanges) {
 }
 
 TEST_F(Helpers, WatchOfSomeDrawingsHasTheExitCodeOfTheLast) {
-  const Outcome watched =
-      run_weft({"watch", "s.toml", "-o", "s.png", "--set", "time.step=-1", "--times", "1"}, folder_);
-  EXPECT_EQ(watched.exit_code, 3) << watched.err;
+  expect_exit(run_weft({"watch", "s.toml", "-o", "s.png", "--set", "time.step=-1", "--times", "1"}, folder_), 3);
   EXPECT_FALSE(fs::exists(folder_ / "s.png"));
 }
 
 TEST_F(Helpers, WatchOfTheStartReplacesNoForeignPicture) {
   fs::create_directories(folder_ / "output");
   support::write_bytes(folder_ / "output/s.start.watch.png", "precious");
-  const Outcome refused = run_weft({"watch", "s.toml", "--start", "--times", "1"}, folder_);
-  EXPECT_EQ(refused.exit_code, 6) << refused.err;
+  expect_exit(run_weft({"watch", "s.toml", "--start", "--times", "1"}, folder_), 6);
   EXPECT_EQ(support::read_bytes(folder_ / "output/s.start.watch.png"), "precious");
 }
 
@@ -145,14 +140,11 @@ TEST_F(Helpers, WatchOfAStillReplacesNoThumbnail) {
   ASSERT_EQ(run_weft(thumbnail, folder_).exit_code, 0);
   const auto written = fs::last_write_time(folder_ / "output/s.png");
   for (int call = 0; call < 2; ++call) {
-    const Outcome watched = run_weft(watch, folder_);
-    EXPECT_EQ(watched.exit_code, 0) << watched.err;
+    expect_exit(run_weft(watch, folder_), 0);
   }
   EXPECT_TRUE(fs::exists(folder_ / "output/s.watch.png"));
   watch.insert(watch.end(), {"-o", "output/s.png"});
-  const Outcome refused = run_weft(watch, folder_);
-  EXPECT_EQ(refused.exit_code, 6) << refused.err;
-  EXPECT_NE(refused.err.find("give a name that ends in .watch.png"), std::string::npos) << refused.err;
+  expect_exit(run_weft(watch, folder_), 6, "give a name that ends in .watch.png");
   EXPECT_EQ(fs::last_write_time(folder_ / "output/s.png"), written);
   watch.back() = "output";
   EXPECT_EQ(run_weft(watch, folder_).exit_code, 0);
@@ -165,14 +157,11 @@ TEST_F(Helpers, WatchOfAFilmReplacesNoFinishedFilm) {
   for (Arguments* command : {&run, &watch}) command->insert(command->end(), small.begin(), small.end());
   ASSERT_EQ(run_weft(run, folder_).exit_code, 0);
   const auto written = fs::last_write_time(folder_ / "output/s.mp4");
-  const Outcome watched = run_weft(watch, folder_);
-  EXPECT_EQ(watched.exit_code, 0) << watched.err;
+  expect_exit(run_weft(watch, folder_), 0);
   EXPECT_EQ(fs::last_write_time(folder_ / "output/s.mp4"), written);
   EXPECT_TRUE(fs::exists(folder_ / "output/s.watch.mp4"));
   watch.insert(watch.end(), {"-o", "output/s.mp4"});
-  const Outcome refused = run_weft(watch, folder_);
-  EXPECT_EQ(refused.exit_code, 6) << refused.err;
-  EXPECT_NE(refused.err.find("give a name that ends in .watch.mp4"), std::string::npos) << refused.err;
+  expect_exit(run_weft(watch, folder_), 6, "give a name that ends in .watch.mp4");
   EXPECT_EQ(fs::last_write_time(folder_ / "output/s.mp4"), written);
   watch.back() = "output/s.watch.mp4";
   EXPECT_EQ(run_weft(watch, folder_).exit_code, 0);
@@ -243,14 +232,12 @@ TEST_F(Helpers, TwoDashesEndTheOptions) {
   fs::copy(folder_ / "s.toml", folder_ / "-s.toml");
   EXPECT_EQ(run_weft({"check", "--", "-s.toml"}, folder_).exit_code, 0);
   EXPECT_EQ(run_weft({"check", "./-s.toml"}, folder_).exit_code, 0);
-  const Outcome watched = run_weft(
-      {"watch", "--frame", "0", "--size", "64x36", "--quality", "draft", "--times", "1", "--", "-s.toml"}, folder_);
-  EXPECT_EQ(watched.exit_code, 0) << watched.err;
-  const Outcome outcome = run_weft({"check", "-s.toml"}, folder_);
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_NE(outcome.err.find("unknown option -s.toml; for a file of this name, write ./-s.toml, or put it after --"),
-            std::string::npos)
-      << outcome.err;
+  expect_exit(
+      run_weft({"watch", "--frame", "0", "--size", "64x36", "--quality", "draft", "--times", "1", "--", "-s.toml"},
+               folder_),
+      0);
+  expect_exit(run_weft({"check", "-s.toml"}, folder_), 2,
+              "unknown option -s.toml; for a file of this name, write ./-s.toml, or put it after --");
   EXPECT_NE(run_weft({"check", "--pln"}, folder_).err.find("unknown option --pln; did you mean --plan?"),
             std::string::npos);
 }

@@ -32,16 +32,13 @@ TEST_F(UnevenCells, AreNamedByCheckAndRunWhereObstaclesAreMet) {
   };
   support::write_bytes(folder_ / "needles.obj", needles(0.001));
   const Outcome flat = check(mesh + ball);
-  EXPECT_EQ(flat.exit_code, 0);
-  EXPECT_TRUE(contains(flat.err, "uneven.toml:1:1: cloth.sheet: mesh file ")) << flat.err;
+  expect_exit(flat, 0, "uneven.toml:1:1: cloth.sheet: mesh file ");
   EXPECT_TRUE(contains(flat.err, "repaired to a sheet: 3 edges of flat triangles collapsed or turned")) << flat.err;
   EXPECT_EQ(check(mesh).exit_code, 0) << "nothing to meet";
   support::write_bytes(folder_ / "needles.obj", needles(0.002));
   EXPECT_EQ(check(mesh + ball).exit_code, 0);
 
-  const Outcome uneven = check(graded + "[100, 1]\n" + ball);
-  EXPECT_EQ(uneven.exit_code, 3);
-  EXPECT_TRUE(contains(uneven.err, "a grading closer to 1")) << uneven.err;
+  expect_exit(check(graded + "[100, 1]\n" + ball), 3, "a grading closer to 1");
   EXPECT_EQ(check(graded + "[50, 1]\n" + ball).exit_code, 0);
 }
 

@@ -56,8 +56,7 @@ TEST_F(NothingLost, AFileThatAppearsWhileARunWorksStays) {
     EXPECT_TRUE(contains(outcome.err, "was made by somebody else while this command worked")) << outcome.err;
     expect_kept(file);
   }
-  const Outcome pictures = disturbed({"run", "s.toml", "-o", "p/{frame:05}.png"}, [&] { write("p/00020.png"); });
-  EXPECT_EQ(pictures.exit_code, 6) << pictures.err;
+  expect_exit(disturbed({"run", "s.toml", "-o", "p/{frame:05}.png"}, [&] { write("p/00020.png"); }), 6);
   expect_kept("p/00020.png");
   EXPECT_TRUE(fs::exists(folder_ / "p/00019.png"));
 }
@@ -91,8 +90,7 @@ TEST_F(NothingLost, ARunThatIsGoneOnWithReplacesItsOwnOutputsOnly) {
     write(file, own);
   }
   resumed.insert(resumed.end(), {"--set", "cloth.cloth.look.color=[1,0,0]"});  // changes the effective scene
-  const Outcome outcome = run_weft(with(resumed), folder_);
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  expect_exit(run_weft(with(resumed), folder_), 0);
 }
 
 TEST_F(NothingLost, OverwriteRemovesOnlyWhatALongerRunHasWritten) {
@@ -133,8 +131,7 @@ TEST_F(NothingLost, PartialWithOverwriteLeavesTheFramesThatItDoesNotMake) {
     for (const Arguments& command : {render, exported}) {
       Arguments arguments = command;
       arguments.insert(arguments.end(), more.begin(), more.end());
-      const Outcome outcome = command == render ? weft(arguments) : run_weft(arguments, folder_);
-      EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+      expect_exit(command == render ? weft(arguments) : run_weft(arguments, folder_), 0);
     }
   };
   expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":3"});

@@ -247,8 +247,7 @@ TEST_F(Paths, OverwrittenUnderOneNameAFileKeepsWhatItHoldsUnderAnother) {
       Arguments arguments{"run", "s.toml", option, name, "--overwrite"};
       if (option != std::string("-o")) arguments.insert(arguments.end(), {"-o", "d.mp4"});
       arguments.insert(arguments.end(), kSmall.begin(), kSmall.end());
-      const Outcome outcome = run_weft(arguments, folder_);
-      EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+      expect_exit(run_weft(arguments, folder_), 0);
       EXPECT_EQ(support::read_bytes(folder_ / "precious"), "precious") << name;
       EXPECT_NE(support::read_bytes(folder_ / name), "precious") << name;
     }

@@ -212,9 +212,7 @@ TEST_F(Program, MeshesHoldEachObjectOfEachDrawnFrame) {
   EXPECT_EQ(start.triangles.size(), 24u);  // 4 by 3 quads, each split in two
   const support::PlyMesh end = support::read_ply(folder_ / "m/cloth_00004.ply");
   EXPECT_LT(end.positions[0].z(), start.positions[0].z() - 0.05) << "the cloth did not fall";
-  const Outcome again = run({"--meshes", "m", "--frames", "0:1", "-o", "other.mp4"});
-  EXPECT_EQ(again.exit_code, 6);
-  EXPECT_TRUE(contains(again.err, "m/cloth_00000.ply: exists already")) << again.err;
+  expect_exit(run({"--meshes", "m", "--frames", "0:1", "-o", "other.mp4"}), 6, "m/cloth_00000.ply: exists already");
 }
 
 TEST_F(Program, RefusesToReplaceAVideoUnlessTold) {
@@ -244,18 +242,15 @@ TEST_F(Program, OutputThatCannotBeWrittenIsRefusedBeforeSimulating) {
 }
 
 TEST_F(Program, DiskThatFillsUpLeavesNoHalfVideo) {
-  const Outcome outcome = Subprocess(run_arguments({"-o", "a.mp4"}), folder_, 500).wait();
-  EXPECT_EQ(outcome.exit_code, 6) << outcome.err;
-  EXPECT_TRUE(contains(outcome.err, "File too large; no frame was written")) << outcome.err;
+  expect_exit(Subprocess(run_arguments({"-o", "a.mp4"}), folder_, 500).wait(), 6,
+              "File too large; no frame was written");
   EXPECT_EQ(tree(), std::set<std::string>{"s.toml"});
 }
 
 TEST_F(Program, OverridesAreCheckedLikeTheFile) {
   EXPECT_EQ(run({"--set", "cloth.cloth.particles=[3,3]", "--stats", "s.json"}).exit_code, 0);
   EXPECT_EQ(json("s.json").at("particles"), 9);
-  const Outcome wrong = run({"--set", "time.fps=-1"});
-  EXPECT_EQ(wrong.exit_code, 3);
-  EXPECT_TRUE(contains(wrong.err, "time.fps")) << wrong.err;
+  expect_exit(run({"--set", "time.fps=-1"}), 3, "time.fps");
   EXPECT_EQ(run({"--fps", "20", "-o", "f.mp4"}).exit_code, 0);
   EXPECT_EQ(probe_video(folder_ / "f.mp4").frames, 9);
 }
@@ -289,8 +284,7 @@ TEST_F(Program, CheckPrintsAllMistakesOfAllScenesAndExitsWith3) {
   support::write_bytes(folder_ / "bad.toml", "[time]\nduraton = 3\nfps = -1\n[[cloth]]\nname = 'a'\n");
   support::write_bytes(folder_ / "worse.toml", "[time\n");
   const Outcome outcome = run_weft({"check", "bad.toml", "s.toml", "worse.toml", "none.toml"}, folder_);
-  EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_TRUE(contains(outcome.err, "bad.toml:2:1: time.duraton: unknown key; did you mean duration?")) << outcome.err;
+  expect_exit(outcome, 3, "bad.toml:2:1: time.duraton: unknown key; did you mean duration?");
   EXPECT_TRUE(contains(outcome.err, "bad.toml:3:")) << outcome.err;
   EXPECT_TRUE(contains(outcome.err, "worse.toml:1:")) << outcome.err;
   EXPECT_TRUE(contains(outcome.err, "none.toml")) << outcome.err;
@@ -342,8 +336,7 @@ TEST_F(Program, CheckReadsPatternsAndTheirDrawings) {
   const std::string pattern = damaged(kSack, "front.left", "front.lft") + "[[hem]]\nedge = 'front.hem'\nmass = -1\n";
   put(damaged(cloth, "0.1", "-1"), pattern, damaged(kDrawing, "V-300", "W-300"));
   const Outcome bad = run_weft({"check", "dressed.toml"}, folder_);
-  EXPECT_EQ(bad.exit_code, 3);
-  EXPECT_TRUE(contains(bad.err, "dressed.toml:5:15: cloth.sack.edge_length")) << bad.err;
+  expect_exit(bad, 3, "dressed.toml:5:15: cloth.sack.edge_length");
   EXPECT_TRUE(contains(bad.err, "sack.toml:20:8: hem.0.mass")) << bad.err;
   EXPECT_TRUE(contains(bad.err, "back.svg:2:2: path \"back\": ")) << bad.err;
   EXPECT_EQ(bad.out, "");
@@ -355,8 +348,7 @@ TEST_F(Program, CheckReadsPatternsAndTheirDrawings) {
   EXPECT_EQ(run_weft({"check", "dressed.toml"}, folder_).exit_code, 4);
   put(cloth, damaged(kSack, "side = \"back\"", "rotation = 180"), kDrawing);
   const Outcome turned = run_weft({"check", "dressed.toml", "s.toml"}, folder_);
-  EXPECT_EQ(turned.exit_code, 3);
-  EXPECT_TRUE(contains(turned.err, "cloth.sack: pattern ")) << turned.err;
+  expect_exit(turned, 3, "cloth.sack: pattern ");
   EXPECT_TRUE(contains(turned.out, "s.toml: ok")) << turned.out;
 }
 
@@ -484,9 +476,7 @@ TEST_F(Interrupted, TwiceQuitsAtOnceAndRemovesWhatIsHalfWritten) {
   ASSERT_TRUE(weft.wait_for_output("finishing the current frame"));
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // signals within a second count as one
   weft.send(SIGINT);
-  const Outcome outcome = weft.wait();
-  EXPECT_EQ(outcome.exit_code, 75);
-  EXPECT_TRUE(contains(outcome.err, "quit at once")) << outcome.err;
+  expect_exit(weft.wait(), 75, "quit at once");
   EXPECT_EQ(tree(), (std::set<std::string>{".a.weft-cache", "s.toml"}));
 }
 

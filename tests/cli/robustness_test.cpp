@@ -135,8 +135,7 @@ TEST_F(SmallDisk, FullWhileAPictureIsReplacedKeepsTheOldOne) {
   const std::string before = support::read_bytes(folder_ / "t.png");
   leave(0);
   for (const char* command : {"thumbnail", "sheet"}) {
-    const Outcome outcome = weft({command, "s.toml", "-o", "t.png", "--overwrite"});
-    EXPECT_EQ(outcome.exit_code, 6) << outcome.err;
+    expect_exit(weft({command, "s.toml", "-o", "t.png", "--overwrite"}), 6);
     EXPECT_EQ(support::read_bytes(folder_ / "t.png"), before) << command;
   }
 }
@@ -162,8 +161,7 @@ TEST_F(Robustness, MachineWithoutAnEncoderIsToldSoAndDrawsPicturesAllTheSame) {
   const Outcome run = Subprocess(run_, folder_).wait(), doctor = Subprocess({"doctor"}, folder_).wait();
   const Outcome pictures = Subprocess(pictures_, folder_).wait();
   ::unsetenv("LD_PRELOAD");
-  EXPECT_EQ(run.exit_code, 6);
-  EXPECT_TRUE(contains(run.err, "this libavcodec has no libx264; install")) << run.err;
+  expect_exit(run, 6, "this libavcodec has no libx264; install");
   EXPECT_FALSE(fs::exists(folder_ / "v/a.mp4"));
   EXPECT_EQ(doctor.exit_code, 6) << doctor.out;
   EXPECT_TRUE(contains(doctor.out, "none: libavcodec was built without libx264")) << doctor.out;

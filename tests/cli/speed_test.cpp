@@ -274,9 +274,7 @@ TEST_F(BenchSpeed, KeepsWhatWasMeasuredWhenItIsInterrupted) {
       {"bench", "speed", "--sizes", "0.1,8", "--threads", "1", "--frames", "1:40", "--steps", "1", "-o", "b"}, folder_);
   ASSERT_TRUE(bench.wait_for_output("36 particles"));
   bench.send(SIGINT);
-  const cli::Outcome outcome = bench.wait();
-  EXPECT_EQ(outcome.exit_code, 75) << outcome.err;
-  EXPECT_TRUE(contains(outcome.err, "interrupted after 1 of 2 runs")) << outcome.err;
+  expect_exit(bench.wait(), 75, "interrupted after 1 of 2 runs");
   EXPECT_EQ(records_of(support::read_bytes(folder_ / "b" / "speed_sphere_drape.csv")).size(), 1u);
   EXPECT_TRUE(contains(support::read_bytes(folder_ / "b" / "speed_sphere_drape.md"), "## Sizes"));
 }
@@ -285,8 +283,7 @@ TEST_F(BenchSpeed, ARunThatFailsIsARow) {
   support::write_bytes(folder_ / "s.toml", "[[cloth]]\nname = 'c'\nshape = 'mesh'\nfile = 'c.obj'\n");
   support::write_bytes(folder_ / "c.obj", "v 0 0\n");
   const cli::Outcome outcome = cli::run_weft({"bench", "speed", "s.toml", "--threads", "1", "--steps", "1"}, folder_);
-  EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
-  EXPECT_TRUE(contains(outcome.err, "measured at its own size")) << outcome.err;
+  expect_exit(outcome, 5, "measured at its own size");
   EXPECT_TRUE(contains(outcome.out, "No run succeeded.")) << outcome.out;
   const auto csv = support::read_bytes(folder_ / "output" / "bench" / "speed_s.csv");
   EXPECT_TRUE(contains(csv, "c.obj")) << csv;
@@ -335,18 +332,14 @@ TEST_F(BenchSpeed, APeerThatFailsIsARow) {
 }
 
 TEST_F(BenchSpeed, MistakesShowBeforeAnythingIsMeasured) {
-  cli::Outcome outcome = cli::run_weft({"bench", "speed", "--sizes", "0.1,50", "-o", "b"}, folder_);
-  EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_TRUE(contains(outcome.err, "cloth.sheet.particles: expected")) << outcome.err;
-  outcome = cli::run_weft({"bench", "speed", "--frames", "70:90", "-o", "b"}, folder_);
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_TRUE(contains(outcome.err, "expected a range within 0:76")) << outcome.err;
-  outcome = cli::run_weft({"bench", "speed", "--set", "time.duration=0", "-o", "b"}, folder_);
-  EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_TRUE(contains(outcome.err, "expected at least one frame after frame 0")) << outcome.err;
-  outcome = cli::run_weft({"bench", "speed", "--peer", "none", "-o", "b"}, folder_);
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_TRUE(contains(outcome.err, "--peer: expected a program that can be started")) << outcome.err;
+  expect_exit(cli::run_weft({"bench", "speed", "--sizes", "0.1,50", "-o", "b"}, folder_), 3,
+              "cloth.sheet.particles: expected");
+  expect_exit(cli::run_weft({"bench", "speed", "--frames", "70:90", "-o", "b"}, folder_), 2,
+              "expected a range within 0:76");
+  expect_exit(cli::run_weft({"bench", "speed", "--set", "time.duration=0", "-o", "b"}, folder_), 3,
+              "expected at least one frame after frame 0");
+  expect_exit(cli::run_weft({"bench", "speed", "--peer", "none", "-o", "b"}, folder_), 2,
+              "--peer: expected a program that can be started");
   EXPECT_TRUE(std::filesystem::is_empty(folder_));
 }
 

@@ -42,10 +42,7 @@ TEST_F(Stills, SheetThatNoPngCanHoldIsRefusedBeforeTheSimulation) {
     arguments.insert(arguments.end(), {count, "--size", "16x8192"});
     return run_weft(arguments, folder_);
   };
-  const Outcome refused = of("2");
-  EXPECT_EQ(refused.exit_code, 2) << refused.err;
-  EXPECT_NE(refused.err.find("expected a sheet of at most 16384x16384 pixels, got one of 34x"), std::string::npos)
-      << refused.err;
+  expect_exit(of("2"), 2, "expected a sheet of at most 16384x16384 pixels, got one of 34x");
   EXPECT_EQ(of("1").exit_code, 3);
 }
 
@@ -58,8 +55,7 @@ TEST_F(Stills, OneCallDrawsAPictureOfEachSceneAndGoesOnAfterBrokenOnes) {
   expect_well({"simulate", "s.toml", "--cache", "cache_of_s", "--frames", ":3"});
   const Outcome outcome = weft(
       {"thumbnail", "broken.toml", "none.toml", "s.toml", "deep/c.toml", "b.toml", "--frame", "2", "-o", "stills"});
-  EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
-  EXPECT_NE(outcome.err.find("broken.toml: no picture, exit code 3"), std::string::npos) << outcome.err;
+  expect_exit(outcome, 3, "broken.toml: no picture, exit code 3");
   EXPECT_NE(outcome.err.find("none.toml: no picture, exit code 3"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("3 of 5 pictures are drawn"), std::string::npos) << outcome.err;
   expect_well({"thumbnail", "s.toml", "--frame", "2", "-o", "one.png"});
@@ -88,9 +84,7 @@ TEST_F(Stills, OfSeveralScenesNoneIsDrawnWhereAPictureWouldBeLost) {
   fs::copy_file(folder_ / "s.toml", folder_ / "b.toml");
   const auto expect_refused = [&](std::vector<std::string> arguments, int code, const std::string& words) {
     arguments.insert(arguments.begin(), "thumbnail");
-    const Outcome outcome = weft(arguments);
-    EXPECT_EQ(outcome.exit_code, code) << outcome.err;
-    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+    expect_exit(weft(arguments), code, words);
   };
   expect_refused({"s.toml", "deep/s.toml", "-o", "stills", "--overwrite"}, 2, "stills/s.png is what -o writes");
   expect_refused({"s.toml", "b.toml", "-o", "one.png"}, 2,
@@ -126,24 +120,19 @@ TEST_F(Stills, OfAnUnfinishedCacheShowWhatIsThere) {
   expect_well({"sheet", "c", "-o", "sheet.png"});
   EXPECT_EQ(about("sheet.png").at("frames"), "0 1 2 4 5 6 7");
   EXPECT_EQ(weft({"thumbnail", "c", "-o", "t.png", "--frame", "7"}).exit_code, 0);
-  const Outcome missing = weft({"thumbnail", "c", "-o", "x.png", "--frame", "3"});
-  EXPECT_EQ(missing.exit_code, 9);
-  EXPECT_NE(missing.err.find("frame 3 is missing"), std::string::npos) << missing.err;
+  expect_exit(weft({"thumbnail", "c", "-o", "x.png", "--frame", "3"}), 9, "frame 3 is missing");
 }
 
 // The cloth is flat at first, wraps around the ball, and lies on it at the end.
 TEST_F(Stills, ThumbnailShowsTheClothAtWorkNotFlatInTheAir) {
-  const Outcome outcome = weft({"thumbnail", "s.toml", "-o", "t.png"});
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("the most informative of 21"), std::string::npos) << outcome.err;
+  expect_exit(weft({"thumbnail", "s.toml", "-o", "t.png"}), 0, "the most informative of 21");
   EXPECT_GT(std::stoi(about("t.png").at("frame")), 6) << "the cloth meets the ball at frame 6";
 }
 
 TEST_F(Stills, SceneWhoseClothIsNeverSeenIsDrawnWithAWarning) {
-  const Outcome outcome = weft({"thumbnail", "s.toml", "-o", "t.png", "--set", "cloth.cloth.position=[0,0,-3]", "--set",
-                                "camera=[{name='up',position=[0,0,1],target=[0,0,5]}]"});
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("no frame shows any cloth"), std::string::npos) << outcome.err;
+  expect_exit(weft({"thumbnail", "s.toml", "-o", "t.png", "--set", "cloth.cloth.position=[0,0,-3]", "--set",
+                    "camera=[{name='up',position=[0,0,1],target=[0,0,5]}]"}),
+              0, "no frame shows any cloth");
 }
 
 // The sheet intersects the ball, which no run accepts: `check` and `run` print the same message, and the picture shows
@@ -162,9 +151,7 @@ TEST_F(Stills, OfAStartThatIsRefusedShowInRedWhatMeets) {
   EXPECT_NE(refused.err.find("'weft thumbnail --start' draws it"), std::string::npos) << refused.err;
   EXPECT_NE(refused.err.find(checked.err.substr(0, checked.err.find('\n'))), std::string::npos) << checked.err;
 
-  const Outcome drawn = with({"thumbnail", "s.toml", "--start", "-o", "refused.png"});
-  EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
-  EXPECT_NE(drawn.err.find("in 1 place: 'cloth' and 'ball' ("), std::string::npos) << drawn.err;
+  expect_exit(with({"thumbnail", "s.toml", "--start", "-o", "refused.png"}), 0, "in 1 place: 'cloth' and 'ball' (");
   expect_well({"thumbnail", "s.toml", "--start", "-o", "good.png"});
   const auto red_share = [&](const char* picture) {
     const image::Image image = image::read_png(folder_ / picture);

@@ -1,6 +1,7 @@
 // Starts the real program in its own process, as a shell does.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <sys/types.h>
 
 #include <filesystem>
@@ -50,5 +51,11 @@ inline bool contains(const std::string& text, const std::string& part) {
 /// Runs one command. If the test has one thread, a fork of it calls the function that main() calls. This saves loading
 /// the program and its libraries: 0.15 to 0.3 CPU s. Builds with sanitizers always execute WEFT_PROGRAM.
 Outcome run_weft(const std::vector<std::string>& arguments, const std::filesystem::path& folder);
+
+/// Expects that a command has ended with this exit code, and that its messages contain `words`.
+inline void expect_exit(const Outcome& outcome, int exit_code, const std::string& words = "") {
+  EXPECT_EQ(outcome.exit_code, exit_code) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, words)) << "expected: " << words << "\ngot: " << outcome.err;
+}
 
 }  // namespace weft::cli

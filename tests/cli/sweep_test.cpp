@@ -233,8 +233,7 @@ class Sweeps : public CachedRun {
 TEST_F(Sweeps, HaveTheVideosOfSingleRunsASheetATableAndAPage) {
   const Arguments arguments{"--set",  kRadius, "--set", "time.duration=0.2", "--set", "time.step=0.02,0.01",
                             "--jobs", "2"};
-  const Outcome outcome = sweep(arguments);
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  expect_exit(sweep(arguments), 0);
   expect_well({"run", "s.toml", "-o", "one.mp4", "--set", "obstacle.ball.radius=0.11", "--set", "time.duration=0.2",
                "--set", "time.step=0.01"});
   EXPECT_EQ(decoded("w/radius=0.11_step=0.01/s.mp4"), decoded("one.mp4"));
@@ -257,14 +256,11 @@ TEST_F(Sweeps, GoOnWithWhatIsNotDoneAndPassOverTheRest) {
   const auto written = fs::last_write_time(folder_ / "w/duration=0.12/s.mp4");
   fs::remove(folder_ / "w/duration=0.08/s.json");
   const Outcome again = sweep(arguments);
-  EXPECT_EQ(again.exit_code, 0) << again.err;
-  EXPECT_NE(again.err.find("] duration=0.12: done already\n"), std::string::npos) << again.err;
+  expect_exit(again, 0, "] duration=0.12: done already\n");
   EXPECT_NE(again.err.find("duration=0.120: the same scene as duration=0.12\n"), std::string::npos) << again.err;
   EXPECT_TRUE(fs::exists(folder_ / "w/duration=0.08/s.mp4"));
   EXPECT_EQ(fs::last_write_time(folder_ / "w/duration=0.12/s.mp4"), written);
-  const Outcome other = sweep({"--set", "time.duration=0.08,0.12", "--frames", "0:2"});
-  EXPECT_EQ(other.exit_code, 6);
-  EXPECT_NE(other.err.find("w: holds runs with other options"), std::string::npos) << other.err;
+  expect_exit(sweep({"--set", "time.duration=0.08,0.12", "--frames", "0:2"}), 6, "w: holds runs with other options");
   fs::create_directories(folder_ / "w2/mine");
   EXPECT_EQ(run_weft({"sweep", "s.toml", "-o", "w2", "--set", kRadius}, folder_).exit_code, 6);
 }
@@ -275,15 +271,12 @@ TEST_F(Sweeps, GoOnWithAnotherNumberOfThreads) {
   for (const Arguments& threads : {Arguments{}, Arguments{"--threads", "1"}}) {
     Arguments arguments{"--set", "time.duration=0.08"};
     arguments.insert(arguments.end(), threads.begin(), threads.end());
-    const Outcome again = sweep(arguments);
-    EXPECT_EQ(again.exit_code, 0) << again.err;
-    EXPECT_NE(again.err.find("duration=0.08: done already\n"), std::string::npos) << again.err;
+    expect_exit(sweep(arguments), 0, "duration=0.08: done already\n");
   }
-  const Outcome farm = run_weft({"farm", "submit", "s.toml", "-o", "w", "--size", "64x36", "--quality", "draft",
-                                 "--set", "time.duration=0.08", "--dry-run"},
-                                folder_);
-  EXPECT_EQ(farm.exit_code, 0) << farm.err;
-  EXPECT_NE(farm.err.find("all runs are done"), std::string::npos) << farm.err;
+  expect_exit(run_weft({"farm", "submit", "s.toml", "-o", "w", "--size", "64x36", "--quality", "draft", "--set",
+                        "time.duration=0.08", "--dry-run"},
+                       folder_),
+              0, "all runs are done");
 }
 
 TEST_F(Sweeps, AFolderInThePlaceOfAVideoIsNoRunThatIsDone) {
@@ -291,10 +284,7 @@ TEST_F(Sweeps, AFolderInThePlaceOfAVideoIsNoRunThatIsDone) {
   EXPECT_EQ(sweep(arguments).exit_code, 0);
   fs::remove(folder_ / "w/duration=0.08/s.mp4");
   fs::create_directories(folder_ / "w/duration=0.08/s.mp4");
-  const Outcome again = sweep(arguments);
-  EXPECT_EQ(again.exit_code, 6) << again.err;
-  EXPECT_NE(again.err.find("s.mp4: expected the name of a file to write, got a folder"), std::string::npos)
-      << again.err;
+  expect_exit(sweep(arguments), 6, "s.mp4: expected the name of a file to write, got a folder");
   EXPECT_EQ(run_weft({"farm", "status", "w"}, folder_).exit_code, 9);
 }
 
@@ -312,9 +302,7 @@ TEST_F(Sweeps, RunsThatWereToBeRepeatedAreNotDoneUntilThen) {
 }
 
 TEST_F(Sweeps, AreNotReportedBeforeTheyBegin) {
-  const Outcome outcome = sweep({"--set", kRadius, "--report"});
-  EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
-  EXPECT_NE(outcome.err.find("w: expected the folder of a sweep"), std::string::npos) << outcome.err;
+  expect_exit(sweep({"--set", kRadius, "--report"}), 4, "w: expected the folder of a sweep");
   EXPECT_FALSE(fs::exists(folder_ / "w")) << "the sweep would refuse a folder that it has not begun";
 }
 
@@ -324,8 +312,7 @@ TEST_F(Sweeps, NameTheRunsThatFailAndKeepTheOthers) {
       "camera=[{name='v',position=[1,-1,1],target=[0,0,0.2]}],"
       "[{name='w',position=[1,-1,1],target=[0,0,0.2]}]";
   const Outcome outcome = sweep({"--set", cameras, "--set", "time.duration=0.08", "--camera", "v"});
-  EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
-  EXPECT_NE(outcome.err.find("exit code 2: weft: --camera: expected w, got v"), std::string::npos) << outcome.err;
+  expect_exit(outcome, 2, "exit code 2: weft: --camera: expected w, got v");
   EXPECT_NE(outcome.err.find("weft: 1 of 2 runs failed:\n"), std::string::npos) << outcome.err;
   EXPECT_NE(table().find(",2,,,,0,,,,,,,\"camera="), std::string::npos) << "figures of no frame: " << table();
   EXPECT_TRUE(fs::exists(folder_ / "w/sheet.png"));
@@ -333,8 +320,7 @@ TEST_F(Sweeps, NameTheRunsThatFailAndKeepTheOthers) {
 
 TEST_F(Sweeps, MistakesOfAnyRunEndThemBeforeTheFirst) {
   const Outcome outcome = sweep({"--set", "obstacle.ball.radius=0.1,-1", "--set", "cloth.cloth.position=[0,0,1],3"});
-  EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_NE(outcome.err.find("--set obstacle.ball.radius=-1: "), std::string::npos) << outcome.err;
+  expect_exit(outcome, 3, "--set obstacle.ball.radius=-1: ");
   EXPECT_NE(outcome.err.find("--set cloth.cloth.position=3: "), std::string::npos) << outcome.err;
   EXPECT_FALSE(fs::exists(folder_ / "w"));
   EXPECT_EQ(sweep({}).exit_code, 2);
@@ -344,15 +330,13 @@ TEST_F(Sweeps, MistakesOfAnyRunEndThemBeforeTheFirst) {
 TEST_F(Sweeps, RefuseAFolderThatHoldsAFileOfALaterRun) {
   fs::create_directories(folder_ / "w");
   for (const char* picture : {"a.png", "w/b.png"}) image::write_png(folder_ / picture, image::Image(16, 16));
-  const Outcome refused = sweep({"--set", "cloth.cloth.look.image=a.png,w/b.png"});
-  EXPECT_EQ(refused.exit_code, 2) << refused.err;
-  EXPECT_NE(refused.err.find("-o: w holds a file of the scene, which is read"), std::string::npos) << refused.err;
+  expect_exit(sweep({"--set", "cloth.cloth.look.image=a.png,w/b.png"}), 2,
+              "-o: w holds a file of the scene, which is read");
 }
 
 TEST_F(Sweeps, OfWhichNoneIsWellHaveAPageThatSaysWhyAndNoSheet) {
-  const Outcome outcome = sweep({"--set", "cloth.cloth.position=[0,0,0],[0,0,0.01]"});
-  EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_NE(outcome.err.find("w: table.md, table.csv, page/index.html\n"), std::string::npos) << outcome.err;
+  expect_exit(sweep({"--set", "cloth.cloth.position=[0,0,0],[0,0,0.01]"}), 3,
+              "w: table.md, table.csv, page/index.html\n");
   EXPECT_NE(support::read_bytes(folder_ / "w/page/index.html").find("expected surfaces that are apart"),
             std::string::npos);
 }
@@ -362,10 +346,7 @@ TEST_F(Sweeps, StopInOrderAndGoOnToTheSameVideos) {
   Subprocess process(with_sweep(arguments), folder_);
   for (int i = 0; i < 3000 && !fs::exists(folder_ / "w/radius=0.1/.s.weft-cache/frame_00002.weft"); ++i) usleep(20'000);
   process.send(SIGTERM);
-  const Outcome stopped = process.wait();
-  EXPECT_EQ(stopped.exit_code, 75) << stopped.err;
-  EXPECT_NE(stopped.err.find("2 of 2 runs are not finished; the same command continues"), std::string::npos)
-      << stopped.err;
+  expect_exit(process.wait(), 75, "2 of 2 runs are not finished; the same command continues");
   EXPECT_EQ(sweep({"--set", kRadius, "--set", "time.step=0.002"}).exit_code, 0);
   expect_well({"run", "s.toml", "-o", "one.mp4", "--set", "time.step=0.002"});
   EXPECT_EQ(decoded("w/radius=0.1/s.mp4"), decoded("one.mp4"));
@@ -381,8 +362,7 @@ TEST_F(Sweeps, ThatWereToBeRepeatedAndAreStoppedGoOnWithAllRuns) {
   for (int i = 0; i < 3000 && !fs::exists(folder_ / "w/radius=0.1/.s.weft-cache/frame_00002.weft"); ++i) usleep(20'000);
   process.send(SIGTERM);
   EXPECT_EQ(process.wait().exit_code, 75);
-  const Outcome again = sweep(arguments);
-  EXPECT_EQ(again.exit_code, 0) << again.err;
+  expect_exit(sweep(arguments), 0);
   EXPECT_TRUE(fs::exists(folder_ / "w/radius=0.11/s.json")) << "the run has no statistics: " << table();
 }
 

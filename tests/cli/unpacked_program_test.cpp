@@ -47,9 +47,7 @@ class UnpackedProgram : public CachedRun {
 
 TEST_F(UnpackedProgram, BecomesItsToolsAndStartsItselfAgain) {
   EXPECT_EQ(unpacked("--version").exit_code, 0);
-  const Outcome tools = unpacked("farm status none");
-  EXPECT_EQ(tools.exit_code, 4);
-  EXPECT_TRUE(contains(tools.err, "none: expected the folder that weft farm submit was given")) << tools.err;
+  expect_exit(unpacked("farm status none"), 4, "none: expected the folder that weft farm submit was given");
   const Outcome sweep =
       unpacked("sweep s.toml --set time.duration=0.08,0.12 -o sweep --size 64x36 --quality draft --threads 1");
   EXPECT_EQ(sweep.exit_code, 0) << sweep.err;
@@ -59,8 +57,7 @@ TEST_F(UnpackedProgram, BecomesItsToolsAndStartsItselfAgain) {
 TEST_F(UnpackedProgram, GoesOnWithTheCacheOfTheBuiltOne) {
   expect_well({"simulate", "s.toml", "--cache", "whole"});
   expect_well({"simulate", "s.toml", "--cache", "a", "--frames", "0:5"});
-  const Outcome outcome = unpacked("simulate s.toml --cache a --resume --progress none --size 64x36 --quality draft");
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  expect_exit(unpacked("simulate s.toml --cache a --resume --progress none --size 64x36 --quality draft"), 0);
   EXPECT_EQ(hash_of_frames("a", kFrames), hash_of_frames("whole", kFrames));
 }
 
@@ -71,8 +68,7 @@ TEST_F(UnpackedProgram, NamesThePartThatIsMissing) {
   EXPECT_TRUE(contains(tools.err, "libexec/weft-tools")) << tools.err;
   fs::remove(loader_);
   const Outcome outcome = unpacked("--version");
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_TRUE(contains(outcome.err, loader_.string())) << outcome.err;
+  expect_exit(outcome, 1, loader_.string());
   EXPECT_TRUE(contains(outcome.err, "unpack the archive as a whole")) << outcome.err;
 }
 
