@@ -16,6 +16,7 @@
 namespace weft::bench {
 namespace {
 
+using cli::contains;
 using scene::Integrator;
 
 scene::Scene tiny_sheet(const std::vector<std::string>& more = {}) {
@@ -58,7 +59,7 @@ TEST(AccuracyPlan, LeavesAxesOut) {
   EXPECT_TRUE(runs_of_axis(accuracy, Axis::tolerance).empty());
   EXPECT_TRUE(runs_of_axis(accuracy, Axis::mesh).empty());
   EXPECT_TRUE(accuracy.cross_checks.empty()) << "a single step shows nothing of its own error";
-  EXPECT_NE(accuracy_markdown("x", accuracy, "a", "b").find("no other run checks the reference"), std::string::npos);
+  EXPECT_TRUE(contains(accuracy_markdown("x", accuracy, "a", "b"), "no other run checks the reference"));
 }
 
 TEST(AccuracyPlan, HoldsTheSceneAsItStandsWhateverItsStep) {
@@ -103,7 +104,7 @@ TEST(AccuracyPlan, SolvesNothingLessExactlyThanTheScene) {
   EXPECT_FALSE(runs_of_axis(accuracy, Axis::mesh).empty());
   ASSERT_EQ(step_limited_runs(accuracy).size(), 1u);
   EXPECT_TRUE(std::isnan(step_limited_runs(accuracy)[0]->solver_error)) << "no run is solved more exactly";
-  EXPECT_NE(conclusion(accuracy).find("the solver is not known"), std::string::npos) << conclusion(accuracy);
+  EXPECT_TRUE(contains(conclusion(accuracy), "the solver is not known")) << conclusion(accuracy);
 }
 
 TEST(AccuracyPlan, IsRefusedWhereItDoesNotSuitTheScene) {
@@ -164,8 +165,8 @@ TEST(Recommendation, IsTheFirstLineAndNamesKeysAndCosts) {
                   .starts_with("# Error against run time: x\n\n**" + recommendation(accuracy) + "**\n"));
   Accuracy with_contact = accuracy;
   with_contact.contact = true;
-  EXPECT_NE(recommendation(with_contact).find("the centre off by at most 5 mm in the last frame, for an accuracy"),
-            std::string::npos)
+  EXPECT_TRUE(
+      contains(recommendation(with_contact), "the centre off by at most 5 mm in the last frame, for an accuracy"))
       << recommendation(with_contact);
   accuracy.of_scene.integrator = Integrator::bdf2;
   EXPECT_TRUE(recommendation(accuracy).starts_with("Keep the settings of the scene, `time.integrator = \"bdf2\"`"));
@@ -180,11 +181,11 @@ TEST(Recommendation, IsTheFirstLineAndNamesKeysAndCosts) {
 TEST(Recommendation, SaysThatASettingMayBeExactByChance) {
   Accuracy accuracy = accuracy_of_one_metre();
   for (bench::Run& run : accuracy.runs) run.errors.fill(0.02);
-  EXPECT_EQ(recommendation(accuracy).find("chance"), std::string::npos) << recommendation(accuracy);
+  EXPECT_FALSE(contains(recommendation(accuracy), "chance")) << recommendation(accuracy);
   accuracy.runs[0].errors.fill(0.005);
-  EXPECT_NE(recommendation(accuracy).find("off by at most 5 mm, which may be chance, as runs that are solved more "
-                                          "exactly are farther off; the settings of the scene take 4 CPU s"),
-            std::string::npos)
+  EXPECT_TRUE(contains(recommendation(accuracy),
+                       "off by at most 5 mm, which may be chance, as runs that are solved more "
+                       "exactly are farther off; the settings of the scene take 4 CPU s"))
       << recommendation(accuracy);
 }
 
@@ -194,10 +195,10 @@ TEST(Recommendation, LeavesTheSolverAsItIsAtTheSameCost) {
   accuracy.runs.push_back(accuracy.runs[5]);
   accuracy.runs.back().setting.newton_tolerance = 0.1;
   accuracy.runs.back().work.cpu_s = 6.5;
-  EXPECT_NE(recommendation(accuracy).find("`solver.newton_tolerance = 0.1`: 6.5 CPU s"), std::string::npos)
+  EXPECT_TRUE(contains(recommendation(accuracy), "`solver.newton_tolerance = 0.1`: 6.5 CPU s"))
       << recommendation(accuracy);
   accuracy.runs.back().work.cpu_s = 7;
-  EXPECT_NE(recommendation(accuracy).find("`solver.newton_tolerance = 0.01`: 6 CPU s"), std::string::npos);
+  EXPECT_TRUE(contains(recommendation(accuracy), "`solver.newton_tolerance = 0.01`: 6 CPU s"));
 }
 
 TEST(Recommendation, IsTheMostExactOfThoseThatCostTheSame) {
@@ -206,9 +207,9 @@ TEST(Recommendation, IsTheMostExactOfThoseThatCostTheSame) {
   accuracy.runs.back().setting.step = 0.008;
   accuracy.runs.back().errors.fill(0.0025);
   accuracy.runs.back().work.cpu_s = 6.5;
-  EXPECT_NE(recommendation(accuracy).find("`time.step = 0.008`"), std::string::npos) << recommendation(accuracy);
+  EXPECT_TRUE(contains(recommendation(accuracy), "`time.step = 0.008`")) << recommendation(accuracy);
   accuracy.runs.back().work.cpu_s = 7;
-  EXPECT_NE(recommendation(accuracy).find("`time.step = 0.01`"), std::string::npos) << recommendation(accuracy);
+  EXPECT_TRUE(contains(recommendation(accuracy), "`time.step = 0.01`")) << recommendation(accuracy);
 }
 
 // With 25 frames a second and three steps a frame, a step printed as 0.01333 s would be too short: four steps would be
@@ -218,28 +219,29 @@ TEST(Recommendation, RoundsStepsUp) {
   for (bench::Run& run : accuracy.runs) run.setting.step = 1.0 / 75;
   accuracy.runs.resize(1);
   accuracy.runs[0].errors.fill(1e-4);
-  EXPECT_NE(recommendation(accuracy).find("`time.step = 0.01334`"), std::string::npos) << recommendation(accuracy);
+  EXPECT_TRUE(contains(recommendation(accuracy), "`time.step = 0.01334`")) << recommendation(accuracy);
 }
 
 TEST(Html, HasHeadingsTablesPlotsAndNoMarkup) {
   const std::string page = html_page(
       "a < b", "# A & b\n\n**Use `x < 1`.**\nand more\n\n| h | i |\n|---|---|\n| 1 \\| 2 | `c` |\n\n![p](p.svg)\n",
       [](const std::string& name) { return "<svg>" + name + "</svg>"; });
-  EXPECT_NE(page.find("<title>a &lt; b</title>"), std::string::npos);
-  EXPECT_NE(page.find("<h1>A &amp; b</h1>"), std::string::npos);
-  EXPECT_NE(page.find("<p><strong>Use <code>x &lt; 1</code>.</strong> and more</p>"), std::string::npos) << page;
-  EXPECT_NE(page.find("<table>\n<tr><th> h </th><th> i </th></tr>\n<tr><td> 1 | 2 </td><td> <code>c</code> </td></tr>\n"
-                      "</table>"),
-            std::string::npos)
+  EXPECT_TRUE(contains(page, "<title>a &lt; b</title>"));
+  EXPECT_TRUE(contains(page, "<h1>A &amp; b</h1>"));
+  EXPECT_TRUE(contains(page, "<p><strong>Use <code>x &lt; 1</code>.</strong> and more</p>")) << page;
+  EXPECT_TRUE(
+      contains(page,
+               "<table>\n<tr><th> h </th><th> i </th></tr>\n<tr><td> 1 | 2 </td><td> <code>c</code> </td></tr>\n"
+               "</table>"))
       << page;
-  EXPECT_NE(page.find("<svg>p.svg</svg>"), std::string::npos);
+  EXPECT_TRUE(contains(page, "<svg>p.svg</svg>"));
 }
 
 TEST(Html, KeepsTheOrderOfTablesAndParagraphsWithoutBlankLines) {
   const std::string page = html_page("a", "before\n| h |\n|---|\n| c |\nafter\n", {});
   const std::string body =
       "<p>before</p>\n<table>\n<tr><th> h </th></tr>\n<tr><td> c </td></tr>\n</table>\n<p>after</p>";
-  EXPECT_NE(page.find(body), std::string::npos) << page;
+  EXPECT_TRUE(contains(page, body)) << page;
 }
 
 class BenchAccuracyPlan : public support::TestFolder {};
@@ -253,7 +255,7 @@ TEST_F(BenchAccuracyPlan, OptionsDecideWhatThePageHas) {
   const std::string page = support::read_bytes(folder_ / "b/accuracy_swinging_sheet.html");
   EXPECT_NE(page.find("<svg"), page.rfind("<svg")) << "both plots";
   EXPECT_EQ(page.find("implicit_midpoint, step"), page.rfind("implicit_midpoint, step")) << "the reference alone";
-  EXPECT_EQ(page.find("Meshes"), std::string::npos);
+  EXPECT_FALSE(contains(page, "Meshes"));
   EXPECT_EQ(outcome.out.substr(0, outcome.out.find('\n')).find("CPU s") == std::string::npos, false) << outcome.out;
 }
 

@@ -23,6 +23,7 @@ namespace {
 
 using namespace run_error;
 
+using cli::contains;
 using scene::Integrator;
 using Triangles = std::vector<mesh::Triangle>;
 
@@ -233,7 +234,7 @@ TEST(AccuracyOfASheet, FailsOnlyWithBothReferences) {
     FAIL() << "one iteration is not enough";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::simulation_failed);
-    EXPECT_NE(std::string(error.what()).find("the reference run failed: "), std::string::npos) << error.what();
+    EXPECT_TRUE(contains(std::string(error.what()), "the reference run failed: ")) << error.what();
   }
 }
 
@@ -294,7 +295,7 @@ TEST(AccuracyOfASheet, ConclusionFollowsFromTheTable) {
   ASSERT_EQ(rows.size(), measured().runs.size());
   const std::string text = conclusion(measured());
   for (const auto& [target, words] : {std::pair{0.01, "of 0.01 m: "}, {0.001, "; 0.001 m: "}, {0.0001, "; 0.0001 m: "}})
-    EXPECT_NE(text.find(words + cheapest_of(rows, target)), std::string::npos) << target << "\n" << text;
+    EXPECT_TRUE(contains(text, words + cheapest_of(rows, target))) << target << "\n" << text;
   // The text also gives the error of the solver at the settings of the scene.
   const auto at_scene_settings = std::find_if(rows.begin(), rows.end(), [](const Row& row) {
     return row.axis == "grid" && row.integrator == "implicit_euler" && row.step == 0.01 &&
@@ -302,7 +303,7 @@ TEST(AccuracyOfASheet, ConclusionFollowsFromTheTable) {
   });
   ASSERT_NE(at_scene_settings, rows.end());
   const auto& run = measured().runs[static_cast<std::size_t>(at_scene_settings - rows.begin())];
-  EXPECT_NE(text.find(fmt::format("the solver {:.1e} m", run.solver_error)), std::string::npos) << text;
+  EXPECT_TRUE(contains(text, fmt::format("the solver {:.1e} m", run.solver_error))) << text;
 }
 
 TEST(AccuracyWithContact, ComparesMediansOfSeveralStarts) {
@@ -318,17 +319,17 @@ TEST(AccuracyWithContact, ComparesMediansOfSeveralStarts) {
     EXPECT_LE(at(run.spread, Quantity::centre), accuracy.uncertainty_of(run, Quantity::centre));
   }
   EXPECT_TRUE(spread);
-  EXPECT_EQ(accuracy_markdown("x", accuracy, "a", "b").find("position ["), std::string::npos);
+  EXPECT_FALSE(contains(accuracy_markdown("x", accuracy, "a", "b"), "position ["));
 }
 
 TEST(AccuracyWhereNothingMoves, SaysSoWithoutInfinities) {
   const Accuracy accuracy = measure_accuracy(small_sheet({"physics.gravity=[0,0,0]", "time.duration=0.08"}));
   const std::string text = accuracy_markdown("x", accuracy, "a", "b") + csv(accuracy_table(accuracy)) +
                            work_svg("x", accuracy) + settings_svg("x", accuracy);
-  EXPECT_NE(text.find("Nothing moves"), std::string::npos);
+  EXPECT_TRUE(contains(text, "Nothing moves"));
   // The errors are rounding errors. The text must not divide them by zero.
   for (const bench::Run& run : accuracy.runs) EXPECT_LT(error_of(run, Quantity::energy), 1e-9);
-  for (const char* word : {"inf", "nan"}) EXPECT_EQ(text.find(word), std::string::npos) << word;
+  for (const char* word : {"inf", "nan"}) EXPECT_FALSE(contains(text, word)) << word;
 }
 
 // Made-up results for steps of 40 ms / n: Euler has errors of 19.4 mm / n and takes n CPU s; midpoint has errors of
@@ -354,26 +355,23 @@ Accuracy made_up_accuracy() {
 
 TEST(Conclusion, NamesTheCheapestSettingForEachAccuracyAndTheCostOfADigit) {
   const std::string text = conclusion(made_up_accuracy());
-  EXPECT_NE(text.find("0.01 m: implicit_euler, step 20 ms, newton_tolerance 0.1 (2 CPU s, error 9.7e-03 m)"),
-            std::string::npos)
+  EXPECT_TRUE(contains(text, "0.01 m: implicit_euler, step 20 ms, newton_tolerance 0.1 (2 CPU s, error 9.7e-03 m)"))
       << text;
-  EXPECT_NE(text.find("0.001 m: implicit_midpoint, step 5 ms, newton_tolerance 0.1 (16 CPU s"), std::string::npos)
-      << text;
+  EXPECT_TRUE(contains(text, "0.001 m: implicit_midpoint, step 5 ms, newton_tolerance 0.1 (16 CPU s")) << text;
   // One more digit needs ten times the steps with Euler, √10 times with midpoint.
-  EXPECT_NE(text.find("implicit_euler 10.0 times and unknown, implicit_midpoint 3.2 times"), std::string::npos) << text;
+  EXPECT_TRUE(contains(text, "implicit_euler 10.0 times and unknown, implicit_midpoint 3.2 times")) << text;
 }
 
 TEST(Conclusion, DoesNotPromiseWhatTheReferenceDoesNotKnow) {
   Accuracy accuracy = made_up_accuracy();
   accuracy.uncertainty.fill(5e-5);
   const std::string text = conclusion(accuracy);
-  EXPECT_NE(text.find("0.0001 m: the reference is not known so exactly"), std::string::npos) << text;
-  EXPECT_NE(text.find("1.7e-04 m, as exact as this report can show: implicit_midpoint, step 2.5 ms"), std::string::npos)
-      << text;
+  EXPECT_TRUE(contains(text, "0.0001 m: the reference is not known so exactly")) << text;
+  EXPECT_TRUE(contains(text, "1.7e-04 m, as exact as this report can show: implicit_midpoint, step 2.5 ms")) << text;
   // The tables mark this value as uncertain, too.
   const bench::Run& fine = *accuracy.series(Axis::grid, Integrator::implicit_midpoint).back();
   EXPECT_FALSE(accuracy.resolved(fine, Quantity::position));
-  EXPECT_NE(accuracy_markdown("x", accuracy, "a", "b").find(fmt::format("~{:.1e}", fine.errors[0])), std::string::npos);
+  EXPECT_TRUE(contains(accuracy_markdown("x", accuracy, "a", "b"), fmt::format("~{:.1e}", fine.errors[0])));
 }
 
 TEST(Conclusion, LeavesOutRunsThatFailedAndTheReportListsThemWithTheirReason) {
@@ -381,9 +379,7 @@ TEST(Conclusion, LeavesOutRunsThatFailedAndTheReportListsThemWithTheirReason) {
   accuracy.runs[2].failure = "frame 3: it went | wrong";
   EXPECT_EQ(cheapest(accuracy, Quantity::position, 0.01), &accuracy.runs[3]);
   const std::string text = accuracy_markdown("x", accuracy, "a.svg", "b.svg");
-  EXPECT_NE(text.find("| implicit_euler | 20 ms, newton_tolerance 0.1 | frame 3: it went \\| wrong |"),
-            std::string::npos)
-      << text;
+  EXPECT_TRUE(contains(text, "| implicit_euler | 20 ms, newton_tolerance 0.1 | frame 3: it went \\| wrong |")) << text;
   const Table table = accuracy_table(accuracy);
   EXPECT_EQ(table.size(), accuracy.runs.size() + 1);
   EXPECT_EQ(table[3].back(), "frame 3: it went | wrong");
@@ -418,13 +414,13 @@ TEST(Plot, PlacesPointsOnLogarithmicAxesAndLeavesOutWhatIsNotPositive) {
   ASSERT_EQ(points.size(), 4u) << "three points and the name's";
   EXPECT_LT((points[0] + points[2] - 2 * points[1]).norm(), 0.2);
   EXPECT_LT(points[2].y(), points[0].y());
-  EXPECT_EQ(svg.find("nan"), std::string::npos);
-  EXPECT_EQ(svg.find("inf"), std::string::npos);
+  EXPECT_FALSE(contains(svg, "nan"));
+  EXPECT_FALSE(contains(svg, "inf"));
 }
 
 TEST(Plot, WritesATitleAsText) {
   const std::string svg = log_log_svg({{"silk & <wool>", "x", "y", {}, {}}});
-  EXPECT_NE(svg.find(">silk &amp; &lt;wool"), std::string::npos) << svg;
+  EXPECT_TRUE(contains(svg, ">silk &amp; &lt;wool")) << svg;
 }
 
 TEST(Plot, NamesDecadesAndWhereThereAreFewTheirParts) {
@@ -453,8 +449,8 @@ TEST_F(BenchAccuracy, WritesReportTableAndPlots) {
   const cli::Outcome outcome = cli::run_weft(
       {"bench", "accuracy", "--set", "cloth.sheet.particles=6", "--set", "time.duration=0.04", "-o", "b"}, folder_);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("Cheapest for an error of the position of 0.01 m: "), std::string::npos);
-  EXPECT_NE(outcome.err.find(" left"), std::string::npos);
+  EXPECT_TRUE(contains(outcome.out, "Cheapest for an error of the position of 0.01 m: "));
+  EXPECT_TRUE(contains(outcome.err, " left"));
   std::istringstream csv(support::read_bytes(folder_ / "b" / "accuracy_swinging_sheet.csv"));
   std::string line;
   std::size_t lines = 0, commas = 0;
@@ -468,7 +464,7 @@ TEST_F(BenchAccuracy, WritesReportTableAndPlots) {
     EXPECT_TRUE(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"));
     EXPECT_EQ(count_of(svg, "<g "), count_of(svg, "</g>"));
     EXPECT_EQ(count_of(svg, "<text"), count_of(svg, "</text>"));
-    EXPECT_NE(support::read_bytes(folder_ / "b" / "accuracy_swinging_sheet.md").find(name), std::string::npos);
+    EXPECT_TRUE(contains(support::read_bytes(folder_ / "b" / "accuracy_swinging_sheet.md"), name));
   }
 }
 

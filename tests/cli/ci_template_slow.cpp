@@ -40,7 +40,7 @@ class CiRepository : public support::TestFolder {
     fs::copy(repo_, folder_ / "kept", fs::copy_options::recursive);
     change();
     EXPECT_EQ(check(options, environment), code) << log_;
-    for (const std::string& words : found) EXPECT_NE(log_.find(words), std::string::npos) << words << "\n" << log_;
+    for (const std::string& words : found) EXPECT_TRUE(contains(log_, words)) << words << "\n" << log_;
     fs::remove_all(repo_);
     fs::rename(folder_ / "kept", repo_);
   }
@@ -86,12 +86,12 @@ class CiRepository : public support::TestFolder {
 };
 
 TEST_F(CiRepository, CatchesWhatIsChangedAndPassesWhatIsNot) {
-  EXPECT_NE(support::read_bytes(repo_ / ".github/workflows/pictures.yml").find("\n        run: sh pictures.sh\n"),
-            std::string::npos);
+  EXPECT_TRUE(
+      contains(support::read_bytes(repo_ / ".github/workflows/pictures.yml"), "\n        run: sh pictures.sh\n"));
   EXPECT_EQ(check(), 8) << log_;
   ASSERT_EQ(run_weft({"accept", "references", "out", "--reason", "first pictures"}, repo_).exit_code, 0);
   ASSERT_EQ(check(), 0) << log_;
-  EXPECT_NE(log_.find("\n9 of 9 match their references\n"), std::string::npos) << log_;
+  EXPECT_TRUE(contains(log_, "\n9 of 9 match their references\n")) << log_;
 
   // Nine changes that a viewer would see.
   expect_caught("physics", [&] { replace("scenes/flag.toml", "wind = [8, 2, 0]", "wind = [8, 3, 0]"); }, 7,
@@ -129,10 +129,10 @@ TEST_F(CiRepository, CatchesWhatIsChangedAndPassesWhatIsNot) {
 TEST_F(CiRepository, GoesOnAfterASceneThatFails) {
   replace("scenes/drapes/scarf.toml", "\"silk\"", "\"slik\"");
   EXPECT_EQ(check(), 3) << log_;
-  EXPECT_NE(log_.find("did you mean silk?"), std::string::npos) << log_;
-  EXPECT_NE(log_.find("pictures.sh: scenes/drapes/scarf.toml failed with exit code 3"), std::string::npos) << log_;
-  EXPECT_NE(log_.find("references: the reference does not exist"), std::string::npos) << log_;
-  EXPECT_NE(support::read_bytes(repo_ / "report/stats/flag.json").find("\"exit_code\": 0"), std::string::npos);
+  EXPECT_TRUE(contains(log_, "did you mean silk?")) << log_;
+  EXPECT_TRUE(contains(log_, "pictures.sh: scenes/drapes/scarf.toml failed with exit code 3")) << log_;
+  EXPECT_TRUE(contains(log_, "references: the reference does not exist")) << log_;
+  EXPECT_TRUE(contains(support::read_bytes(repo_ / "report/stats/flag.json"), "\"exit_code\": 0"));
 }
 
 }  // namespace

@@ -17,6 +17,8 @@ namespace {
 
 using namespace run_error;
 
+using cli::contains;
+
 scene::Scene swinging(const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides{"cloth.sheet.particles=9", "time.duration=0.4"};
   overrides.insert(overrides.end(), more.begin(), more.end());
@@ -60,16 +62,14 @@ TEST(Companions, NameTheSourceOfTheError) {
   EXPECT_EQ(steps.largest().source, ErrorSource::steps);
   EXPECT_LT(part_of(steps, ErrorSource::solver), 0.1 * part_of(steps, ErrorSource::steps));
   EXPECT_EQ(part_of(steps, ErrorSource::mesh), -1) << "not asked for";
-  EXPECT_NE(cli::error_sentence(steps, 0.5).find("most of it due to the time steps; a smaller time.step"),
-            std::string::npos);
+  EXPECT_TRUE(contains(cli::error_sentence(steps, 0.5), "most of it due to the time steps; a smaller time.step"));
   ErrorEstimate solver;
   for (ErrorSource source : {ErrorSource::steps, ErrorSource::solver, ErrorSource::start}) {
     solver.parts.push_back({source});
     solver.parts.back().errors.fill(source == ErrorSource::solver ? 2e-3 : 1e-3);
   }
-  EXPECT_NE(
-      cli::error_sentence(solver, 0.5).find("most of it due to the solver; a smaller solver.newton_tolerance reduces"),
-      std::string::npos);
+  EXPECT_TRUE(contains(cli::error_sentence(solver, 0.5),
+                       "most of it due to the solver; a smaller solver.newton_tolerance reduces"));
 }
 
 TEST(Companions, TellTheErrorOfTheMeshWhereItsCellsCanBeHalved) {
@@ -92,7 +92,7 @@ TEST(Companions, TellTheErrorOfTheMeshWhereItsCellsCanBeHalved) {
   const ErrorEstimate odd = estimate_of(scene, {.mesh = true});
   EXPECT_EQ(odd.parts.back().source, ErrorSource::mesh);
   EXPECT_EQ(odd.parts.back().missing, "the cells cannot be halved");
-  EXPECT_NE(cli::error_summary(odd).find("mesh not known: the cells cannot be halved"), std::string::npos);
+  EXPECT_TRUE(contains(cli::error_summary(odd), "mesh not known: the cells cannot be halved"));
 }
 
 TEST(Companions, KnowNoErrorOfTheMeshAndNoShadowOfRopes) {
@@ -121,8 +121,7 @@ TEST(Companions, ReportChaoticMotion) {
   EXPECT_TRUE(estimate.is_chaotic);
   EXPECT_GT(part_of(estimate, ErrorSource::start), 1e-4);
   const std::string text = cli::error_sentence(estimate, 0.3);
-  EXPECT_NE(text.find("the motion is chaotic: a start moved by 1 µm alone moves positions by"), std::string::npos)
-      << text;
+  EXPECT_TRUE(contains(text, "the motion is chaotic: a start moved by 1 µm alone moves positions by")) << text;
   EXPECT_FALSE(cli::error_json(estimate).at("comparable"));
 }
 
@@ -131,8 +130,8 @@ TEST(Companions, ReportALowerBoundIfAPartOfTheErrorIsNotKnown) {
   estimate.parts = {{ErrorSource::steps, {}}, {ErrorSource::mesh, {}, "the coarser mesh touches a body"}};
   EXPECT_TRUE(estimate.is_lower_bound());
   const std::string text = cli::error_sentence(estimate, 0.3);
-  EXPECT_NE(text.find("positions are off by at least"), std::string::npos) << text;
-  EXPECT_NE(text.find("the error due to the mesh is not known"), std::string::npos) << text;
+  EXPECT_TRUE(contains(text, "positions are off by at least")) << text;
+  EXPECT_TRUE(contains(text, "the error due to the mesh is not known")) << text;
   estimate.parts[1].missing.clear();
   EXPECT_FALSE(estimate.is_lower_bound());
 }
@@ -166,8 +165,7 @@ TEST(Companions, WarnOfStepsWhoseErrorDoesNotFall) {
   for (const scene::Scene& scene : {bounces, fails}) {
     const ErrorEstimate estimate = estimate_of(scene);
     EXPECT_TRUE(estimate.steps_irregular);
-    EXPECT_NE(cli::error_sentence(estimate, 0).find("steps twice as long fail or change it hardly more"),
-              std::string::npos);
+    EXPECT_TRUE(contains(cli::error_sentence(estimate, 0), "steps twice as long fail or change it hardly more"));
   }
 }
 
@@ -183,7 +181,7 @@ TEST_F(ErrorOfARun, IsReportedAtTheEndAndInTheStatistics) {
                                               "--set", "cloth.sheet.particles=9", "--set", "time.duration=0.4"},
                                              folder_);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("error              positions "), std::string::npos) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "error              positions ")) << outcome.err;
   const auto error = nlohmann::json::parse(support::read_bytes(folder_ / "s.json")).at("error");
   const ErrorEstimate expected = estimate_of(swinging());
   EXPECT_DOUBLE_EQ(error.at("all").at("position_m"), at(expected.all, Quantity::position));

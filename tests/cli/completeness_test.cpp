@@ -122,7 +122,7 @@ TEST_F(Completeness, RenderResumesBesideTheReportsAndTheKeptFramesOfACommandBefo
   pictures.back() = ":2";
   pictures.emplace_back("--resume");
   expect_well(pictures);
-  EXPECT_NE(support::read_bytes(folder_ / "s.json").find("\"frame\": 1,"), std::string::npos);
+  EXPECT_TRUE(contains(support::read_bytes(folder_ / "s.json"), "\"frame\": 1,"));
   fs::remove(folder_ / "p/00001.png");
   support::write_bytes(folder_ / "s.json", "{\"of\": \"others\"}\n");
   EXPECT_EQ(weft(pictures).exit_code, 6);

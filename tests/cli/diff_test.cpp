@@ -26,7 +26,7 @@ class Diff : public support::TestFolder {
   void expect(const std::vector<std::string>& arguments, int exit_code, const std::string& words) {
     outcome_ = run_weft(arguments, folder_);
     EXPECT_EQ(outcome_.exit_code, exit_code) << outcome_.out << outcome_.err;
-    EXPECT_NE((outcome_.out + outcome_.err).find(words), std::string::npos) << outcome_.out << outcome_.err;
+    EXPECT_TRUE(contains(outcome_.out + outcome_.err, words)) << outcome_.out << outcome_.err;
   }
 
   Outcome outcome_;
@@ -76,7 +76,7 @@ TEST_F(Diff, FoldersNameWhatIsMissingAndWhatIsSurplus) {
   write("out/gone.png", 1);
   write("out/new.png", 1);
   expect({"diff", "ref", "out"}, 8, "new.png: no reference: there is none for out/new.png");
-  EXPECT_NE(outcome_.out.find("2 of 3 match their references"), std::string::npos) << outcome_.out;
+  EXPECT_TRUE(contains(outcome_.out, "2 of 3 match their references")) << outcome_.out;
   expect({"diff", "ref", "out/a.png"}, 0, "a.png: same");
   expect({"diff", "ref/a.png", "out"}, 0, "a.png: same");
 }
@@ -171,7 +171,7 @@ TEST_F(Diff, AcceptedPictureIsTheReferenceFromThenOn) {
   expect({"diff", "ref", "out"}, 7, "0 of 2 match their references");
   expect({"accept", "ref", "out/a.png", "--reason", "brighter by design"}, 0, "ref/a.png: now as out/a.png");
   expect({"diff", "ref", "out"}, 7, "a.png: same");
-  EXPECT_NE(support::read_bytes(folder_ / "ref/accepted.md").find("| brighter by design |"), std::string::npos);
+  EXPECT_TRUE(contains(support::read_bytes(folder_ / "ref/accepted.md"), "| brighter by design |"));
   expect({"accept", "ref", "out/a.png", "--reason", "again"}, 0, "ref/a.png: is the same already");
 }
 
@@ -182,8 +182,8 @@ TEST_F(Diff, FoldersAreComparedWithAllBelowThem) {
   write("out/a.png", 1);
   write("out/front/a.png", 9);
   expect({"diff", "ref", "out"}, 7, "front/a.png: DIFFERS");
-  EXPECT_NE(outcome_.out.find("front/deep/b.png: missing: the reference ref/front/deep/b.png"), std::string::npos);
-  EXPECT_NE(outcome_.out.find("\n1 of 3 match their references"), std::string::npos) << outcome_.out;
+  EXPECT_TRUE(contains(outcome_.out, "front/deep/b.png: missing: the reference ref/front/deep/b.png"));
+  EXPECT_TRUE(contains(outcome_.out, "\n1 of 3 match their references")) << outcome_.out;
   write("out/front/a.png", 1);
   write("out/front/deep/b.png", 1);
   write("out/back/c.png", 1);
@@ -208,7 +208,7 @@ TEST_F(Diff, LimitsOfSinglePicturesComeFromAFile) {
                        "[[picture]]\nname = \"front/b.*\"\npixel_budget = 0\n");
   expect({"diff", "ref", "out", "--limits", "limits.toml"}, 7, "front/a.png: within the limits");
   EXPECT_TRUE(outcome_.out.starts_with("a.png: DIFFERS")) << outcome_.out;
-  EXPECT_NE(outcome_.out.find("front/b.png: DIFFERS"), std::string::npos) << outcome_.out;
+  EXPECT_TRUE(contains(outcome_.out, "front/b.png: DIFFERS")) << outcome_.out;
   const auto broken = [&](const std::string& text, const std::string& words) {
     support::write_bytes(folder_ / "limits.toml", text);
     expect({"diff", "ref", "out", "--limits", "limits.toml"}, 4, words);
@@ -239,10 +239,9 @@ TEST_F(Diff, JUnitNamesWhatFailedAndWhatIsBroken) {
                       "  <testcase classname=\".\" name=\"a.png\"/>\n"
                       "  <testcase classname=\".\" name=\"c.png\">\n    <error type=\"unreadable\" message=\"c.png: "))
       << xml;
-  EXPECT_NE(xml.find("<testcase classname=\"f\" name=\"b&lt;&amp;&gt;.png\">\n    <failure type=\"differs\""),
-            std::string::npos)
+  EXPECT_TRUE(contains(xml, "<testcase classname=\"f\" name=\"b&lt;&amp;&gt;.png\">\n    <failure type=\"differs\""))
       << xml;
-  EXPECT_NE(xml.find("<failure type=\"no_reference\""), std::string::npos) << xml;
+  EXPECT_TRUE(contains(xml, "<failure type=\"no_reference\"")) << xml;
   expect({"diff", "ref", "out", "--junit", "report.xml"}, 6, "report.xml: exists already");
 }
 
@@ -252,9 +251,9 @@ TEST_F(Diff, FoldersAreAcceptedWithAllBelowThem) {
   write("out/a.png", 1);
   write("out/front/b.png", 9);
   expect({"accept", "ref", "out", "--reason", "new view"}, 0, "note: gone.png has no counterpart in out; it stays");
-  EXPECT_NE(outcome_.err.find("ref/front/b.png: now as out/front/b.png"), std::string::npos) << outcome_.err;
-  EXPECT_NE(outcome_.err.find("ref/a.png: is the same already"), std::string::npos) << outcome_.err;
-  EXPECT_NE(support::read_bytes(folder_ / "ref/accepted.md").find("| front/b.png | none |"), std::string::npos);
+  EXPECT_TRUE(contains(outcome_.err, "ref/front/b.png: now as out/front/b.png")) << outcome_.err;
+  EXPECT_TRUE(contains(outcome_.err, "ref/a.png: is the same already")) << outcome_.err;
+  EXPECT_TRUE(contains(support::read_bytes(folder_ / "ref/accepted.md"), "| front/b.png | none |"));
   expect({"diff", "ref", "out"}, 7, "2 of 3 match their references");
   std::filesystem::create_directories(folder_ / "empty");
   expect({"accept", "ref", "empty", "--reason", "none"}, 4, "empty: holds no pictures or videos");
@@ -376,10 +375,9 @@ TEST_F(Diff, AnnotationsNameTheFilesOfARepository) {
   write("repo/out/new.png", 90);
   expect({"diff", "repo/ref", "repo/out", "--annotations"}, 7,
          "\n::error file=repo/ref/b%2Cc.png,title=weft diff::b,c.png: DIFFERS: 768 of 768 pixels");
-  EXPECT_NE(outcome_.out.find("\n::error file=repo/out/new.png,title=weft diff::new.png: no reference"),
-            std::string::npos)
+  EXPECT_TRUE(contains(outcome_.out, "\n::error file=repo/out/new.png,title=weft diff::new.png: no reference"))
       << outcome_.out;
-  EXPECT_EQ(outcome_.out.find("a.png,"), std::string::npos) << "what is as its reference is no error";
+  EXPECT_FALSE(contains(outcome_.out, "a.png,")) << "what is as its reference is no error";
   expect({"diff", "repo/ref", "repo/out", "--annotations", "--json"}, 7, "::error file=");
   EXPECT_TRUE(nlohmann::json::accept(outcome_.out)) << outcome_.out;
   ::setenv("GITHUB_ACTIONS", "true", 1);
@@ -388,7 +386,7 @@ TEST_F(Diff, AnnotationsNameTheFilesOfARepository) {
   ::unsetenv("GITHUB_ACTIONS");
   ::unsetenv("GITHUB_WORKSPACE");
   expect({"diff", "repo/ref", "repo/out"}, 7, "DIFFERS");
-  EXPECT_EQ(outcome_.out.find("::error"), std::string::npos) << outcome_.out;
+  EXPECT_FALSE(contains(outcome_.out, "::error")) << outcome_.out;
 }
 
 }  // namespace

@@ -53,9 +53,9 @@ TEST_F(ExportCommand, WritesTheMeshesOfRunAndWhatElseItIsAskedFor) {
   EXPECT_EQ(contents("gltf", ".glb").size(), 1U);
   expect_exported({"c", "--format", "usd", "-o", "usd"});
   const std::string usd = contents("usd", ".usda").at("s.usda");
-  EXPECT_NE(usd.find("def Camera \"camera\""), std::string::npos) << "that which is found where the scene names none";
+  EXPECT_TRUE(contains(usd, "def Camera \"camera\"")) << "that which is found where the scene names none";
   expect_exported({"c", "--format", "usdz", "-o", "usdz"});
-  EXPECT_NE(contents("usdz", ".usdz").at("s.usdz").find(usd), std::string::npos) << "the same, packed";
+  EXPECT_TRUE(contains(contents("usdz", ".usdz").at("s.usdz"), usd)) << "the same, packed";
   expect_exported({"c", "--format", "blender", "-o", "blender"});
   expect_same("pc2", "blender", ".pc2", 3);
   EXPECT_EQ(contents("blender", ".py").size(), 1U);

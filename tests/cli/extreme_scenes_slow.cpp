@@ -93,7 +93,7 @@ TEST_P(ExtremeScene, EndsWithTheExitCodeOfItsVerdictAndWholeFiles) {
   for (std::string line; std::getline(lines, line);) {
     if (!line.starts_with("weft:")) continue;
     ++errors;
-    EXPECT_NE(line.find(expected.reason), std::string::npos) << line;
+    EXPECT_TRUE(contains(line, expected.reason)) << line;
   }
   EXPECT_EQ(errors, refused ? 1 : 0) << outcome.err;
 }

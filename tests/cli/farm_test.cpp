@@ -66,7 +66,7 @@ TEST_F(Farms, TasksMakeWhatOneSweepMakes) {
   EXPECT_TRUE(do_tasks().empty()) << log("simulate_0");
   const Outcome status = farm({"status", "a b"});
   EXPECT_EQ(status.exit_code, 0);
-  EXPECT_NE(status.out.find("2 of 2 runs are done"), std::string::npos) << status.out;
+  EXPECT_TRUE(contains(status.out, "2 of 2 runs are done")) << status.out;
   expect_exit(run_weft({"sweep", "s.toml", "-o", "one", "--set", kRadius, "--size", "64x36", "--quality", "draft",
                         "--frames", "0:19:2", "--set", "time.duration=0.8"},
                        folder_),
@@ -78,10 +78,10 @@ TEST_F(Farms, TasksMakeWhatOneSweepMakes) {
   for (const char* file : {"sheet.png", "table.csv", "page/index.html"})
     EXPECT_TRUE(fs::exists(folder_ / "a b" / file));
   const Outcome again = submit();
-  EXPECT_NE(again.err.find("all runs are done"), std::string::npos) << again.err;
+  EXPECT_TRUE(contains(again.err, "all runs are done")) << again.err;
   fs::remove(folder_ / "a b/radius=0.1/s.mp4");
   const Outcome partly = submit();
-  EXPECT_NE(partly.out.find("--array=0\n"), std::string::npos) << "only what is missing: " << partly.out;
+  EXPECT_TRUE(contains(partly.out, "--array=0\n")) << "only what is missing: " << partly.out;
 }
 
 TEST_F(Farms, SubmitOnlyTheReportIfOnlyTheReportFailed) {
@@ -120,7 +120,7 @@ TEST_F(Farms, FilmsOfAFormerSceneAreNotDone) {
   const Outcome status = farm({"status", "a b"});
   EXPECT_EQ(status.exit_code, 9) << status.out;
   const Outcome again = submit();
-  EXPECT_EQ(again.err.find("all runs are done"), std::string::npos) << again.err;
+  EXPECT_FALSE(contains(again.err, "all runs are done")) << again.err;
 }
 
 // A program that was killed once succeeds on the second try. A program that finds a mistake is not tried again.
@@ -132,7 +132,7 @@ TEST_F(Farms, TasksThatWereKilledAreTriedAgain) {
   fs::permissions(folder_ / "killed", fs::perms::owner_all);
   const std::string environment = "WEFT_PAUSE=0 WEFT='" + (folder_ / "killed").string() + "'";
   EXPECT_TRUE(do_tasks(environment).empty());
-  EXPECT_NE(log("simulate_0").find("exit code 137: try 1 of 3"), std::string::npos) << log("simulate_0");
+  EXPECT_TRUE(contains(log("simulate_0"), "exit code 137: try 1 of 3")) << log("simulate_0");
 
   fs::remove_all(folder_ / "a b");
   ASSERT_EQ(submit().exit_code, 0);
@@ -140,10 +140,10 @@ TEST_F(Farms, TasksThatWereKilledAreTriedAgain) {
   const std::vector<int> codes = do_tasks(environment);
   ASSERT_FALSE(codes.empty());
   EXPECT_EQ(codes.front(), 3);
-  EXPECT_EQ(log("simulate_0").find("try 1"), std::string::npos);
+  EXPECT_FALSE(contains(log("simulate_0"), "try 1"));
   const Outcome status = farm({"status", "a b"});
   EXPECT_EQ(status.exit_code, 9);
-  EXPECT_NE(status.out.find("simulate_0 ended with exit code 3"), std::string::npos) << status.out;
+  EXPECT_TRUE(contains(status.out, "simulate_0 ended with exit code 3")) << status.out;
 }
 
 // SIGUSR1, which Slurm sends before the time limit, arrives during the pause between two tries.
@@ -154,17 +154,17 @@ TEST_F(Farms, TasksThatAreToStopBeginNoOtherTry) {
   for (const char* program : {"failing", "sleep"}) fs::permissions(folder_ / program, fs::perms::owner_all);
   do_tasks(fmt::format("PATH='{}':\"$PATH\" WEFT='{}'", folder_.string(), (folder_ / "failing").string()));
   const std::string said = log("simulate_0"), pause = said.substr(std::min(said.find("try 1 of 3"), said.size()));
-  EXPECT_NE(pause.find("the time limit is near"), std::string::npos) << said;
-  EXPECT_EQ(pause.find("\nsimulate\n"), std::string::npos) << "the program was called again: " << said;
+  EXPECT_TRUE(contains(pause, "the time limit is near")) << said;
+  EXPECT_FALSE(contains(pause, "\nsimulate\n")) << "the program was called again: " << said;
 }
 
 TEST_F(Farms, StatusCountsTheFramesThatAreRequested) {
   ASSERT_EQ(submit().exit_code, 0);
   const std::string task = "sh '" + (folder_ / "a b/farm/task.sh").string() + "'";
-  EXPECT_NE(farm({"status", "a b"}).out.find("radius=0.1   not begun"), std::string::npos);
+  EXPECT_TRUE(contains(farm({"status", "a b"}).out, "radius=0.1   not begun"));
   ASSERT_EQ(std::system((task + " simulate 0 && " + task + " draw 0 0").c_str()), 0) << log("simulate_0");
   const Outcome status = farm({"status", "a b"});
-  EXPECT_NE(status.out.find("radius=0.1   4 of 10 frames drawn"), std::string::npos) << status.out;
+  EXPECT_TRUE(contains(status.out, "radius=0.1   4 of 10 frames drawn")) << status.out;
 }
 
 TEST_F(Farms, StatusEscapesControlCharactersOfLogs) {
@@ -172,7 +172,7 @@ TEST_F(Farms, StatusEscapesControlCharactersOfLogs) {
   support::write_bytes(folder_ / "a b/farm/log/t.code", "3");
   support::write_bytes(folder_ / "a b/farm/log/t.log", "weft: \x1b[31mred\n");
   const Outcome status = farm({"status", "a b"});
-  EXPECT_NE(status.out.find("\n  \\x1b[31mred\n"), std::string::npos) << status.out;
+  EXPECT_TRUE(contains(status.out, "\n  \\x1b[31mred\n")) << status.out;
 }
 
 TEST_F(Farms, RequestTheMemoryThatTheirPicturesNeed) {

@@ -32,7 +32,7 @@ TEST_F(Helpers, EveryTemplateIsASceneWithItsSchemaBesideIt) {
     expect_exit(run_weft({"new", "my " + name, "--template", name}, folder_), 0);
     const Outcome checked = run_weft({"check", "my " + name + ".toml"}, folder_);
     EXPECT_EQ(checked.exit_code, 0) << checked.err;
-    EXPECT_EQ(checked.out.find("note:"), std::string::npos) << "nothing to doubt: " << checked.out;
+    EXPECT_FALSE(contains(checked.out, "note:")) << "nothing to doubt: " << checked.out;
     EXPECT_TRUE(support::read_bytes(folder_ / ("my " + name + ".toml")).starts_with("#:schema ./weft.schema.json\n"));
   }
   EXPECT_EQ(support::read_bytes(folder_ / "weft.schema.json"), run_weft({"schema"}, folder_).out);
@@ -60,12 +60,12 @@ TEST_F(Helpers, TemplateOfARepositoryAddsToOneThatIsThere) {
   EXPECT_EQ(read("README.md"), "mine\n");
   EXPECT_EQ(read("scenes/flag.toml"), "# mine\n");
   EXPECT_EQ(read("limits.toml"), "# mine\n");
-  EXPECT_NE(read("PICTURES.md").find("# Scenes of cloth"), std::string::npos);
+  EXPECT_TRUE(contains(read("PICTURES.md"), "# Scenes of cloth"));
   EXPECT_EQ(read(".gitignore"), "/build/\n/out/\n/report/\n/caches/\n/.weft/\n/.ccache/\n");
   EXPECT_TRUE(fs::exists(folder_ / ".github/workflows/pictures.yml"));
   EXPECT_TRUE(fs::exists(folder_ / "pictures.sh"));
-  EXPECT_NE(made.err.find("limits.toml: kept as it is"), std::string::npos) << made.err;
-  EXPECT_NE(made.err.find("PICTURES.md explains the next steps"), std::string::npos) << made.err;
+  EXPECT_TRUE(contains(made.err, "limits.toml: kept as it is")) << made.err;
+  EXPECT_TRUE(contains(made.err, "PICTURES.md explains the next steps")) << made.err;
   // A second call accepts the files that the first call wrote.
   EXPECT_EQ(run_weft({"new", ".", "--template", "ci"}, folder_).exit_code, 0);
   EXPECT_EQ(read(".gitignore"), "/build/\n/out/\n/report/\n/caches/\n/.weft/\n/.ccache/\n");
@@ -86,7 +86,7 @@ TEST_F(Helpers, ScenesOfTheTemplateOfARepositoryHaveFixedCameras) {
   for (const auto& entry : fs::recursive_directory_iterator(folder_ / "repo/scenes")) {
     if (entry.path().extension() != ".toml") continue;
     ++scenes;
-    EXPECT_NE(support::read_bytes(entry.path()).find("[[camera]]"), std::string::npos) << entry.path();
+    EXPECT_TRUE(contains(support::read_bytes(entry.path()), "[[camera]]")) << entry.path();
     EXPECT_EQ(run_weft({"check", entry.path().string()}, folder_).exit_code, 0);
   }
   EXPECT_EQ(scenes, 2);
@@ -194,8 +194,7 @@ TEST_F(Helpers, EndsQuietlyWhereNobodyReadsWhatItPrints) {
   EXPECT_EQ(printed("man", "&9"), std::pair(0, std::string()));
   EXPECT_EQ(printed("check s.toml", "&9"), std::pair(0, std::string()));
   EXPECT_EQ(printed("man", "/dev/full").first, 6);
-  EXPECT_NE(printed("man", "/dev/full").second.find("standard output cannot be written: No space left"),
-            std::string::npos);
+  EXPECT_TRUE(contains(printed("man", "/dev/full").second, "standard output cannot be written: No space left"));
   ::close(9);
 }
 
@@ -205,14 +204,13 @@ TEST_F(Helpers, CompletionAndManualKnowAllThatHelpKnows) {
                     zsh = completion(parser.app, "zsh"), fish = completion(parser.app, "fish");
   for (const CLI::App* command : parser.app.get_subcommands([](const CLI::App*) { return true; })) {
     const std::string& name = command->get_name();
-    EXPECT_NE(man.find(".SH " + name + "\n"), std::string::npos) << name;
-    EXPECT_NE(fish.find("-a " + name + " -d"), std::string::npos) << name;
+    EXPECT_TRUE(contains(man, ".SH " + name + "\n")) << name;
+    EXPECT_TRUE(contains(fish, "-a " + name + " -d")) << name;
     for (const CLI::Option* option : command->get_options())
       for (const std::string& word : option->get_lnames()) {
-        EXPECT_NE(zsh.find("'*--" + word + (option->get_items_expected_max() > 0 ? "=[" : "[")), std::string::npos)
-            << word;
-        EXPECT_NE(fish.find("from " + name + "' "), std::string::npos) << word;
-        EXPECT_NE(fish.find("-l " + word + " "), std::string::npos) << word;
+        EXPECT_TRUE(contains(zsh, "'*--" + word + (option->get_items_expected_max() > 0 ? "=[" : "["))) << word;
+        EXPECT_TRUE(contains(fish, "from " + name + "' ")) << word;
+        EXPECT_TRUE(contains(fish, "-l " + word + " ")) << word;
       }
   }
   support::write_bytes(folder_ / "weft.bash", bash);
@@ -238,16 +236,14 @@ TEST_F(Helpers, TwoDashesEndTheOptions) {
       0);
   expect_exit(run_weft({"check", "-s.toml"}, folder_), 2,
               "unknown option -s.toml; for a file of this name, write ./-s.toml, or put it after --");
-  EXPECT_NE(run_weft({"check", "--pln"}, folder_).err.find("unknown option --pln; did you mean --plan?"),
-            std::string::npos);
+  EXPECT_TRUE(contains(run_weft({"check", "--pln"}, folder_).err, "unknown option --pln; did you mean --plan?"));
 }
 
 TEST_F(Helpers, CheckSaysWhatHasChangedSinceAnotherScene) {
   const auto check = [&](const char* changed, const char* against, int code, const std::string& words) {
     const Outcome outcome = run_weft({"check", "s.toml", "--set", changed, "--against", against}, folder_);
     EXPECT_EQ(outcome.exit_code, code) << outcome.err;
-    EXPECT_NE((outcome.out + outcome.err).find(words), std::string::npos) << words << "\n"
-                                                                          << outcome.out << outcome.err;
+    EXPECT_TRUE(contains(outcome.out + outcome.err, words)) << words << "\n" << outcome.out << outcome.err;
   };
   check("time.preroll=0", "s.toml", 0, "s.toml: the same as s.toml\n");
   check("cloth.cloth.look.roughness=0.25", "s.toml", 0, "s.toml: changed: cloth.cloth.look.roughness: ");
@@ -262,7 +258,7 @@ TEST_F(Helpers, CheckSaysWhatHasChangedSinceAnotherScene) {
 TEST_F(Helpers, CheckEstimatesWhatARunTakes) {
   const Outcome outcome = run_weft({"check", "--estimate", "s.toml"}, folder_);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("MB of memory, estimated from 10 frames"), std::string::npos) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, "MB of memory, estimated from 10 frames")) << outcome.out;
 }
 
 // Commands that keep no files end at once.

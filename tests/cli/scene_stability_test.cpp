@@ -12,6 +12,8 @@
 namespace weft::bench {
 namespace {
 
+using cli::contains;
+
 /// A strip of undamped threads that swings from one edge with the midpoint rule. It becomes unstable with long steps or
 /// stiff threads.
 const std::string kStrip =
@@ -87,11 +89,11 @@ TEST(SceneStability, FindsWhereItBreaksAndWhatBreaks) {
   } catch (const Error& error) {
     reported += error.what();
   }
-  EXPECT_NE(reported.find("more than at the start"), std::string::npos) << reported;
+  EXPECT_TRUE(contains(reported, "more than at the start")) << reported;
   const std::string sentence = margin_sentence(strip());
   EXPECT_TRUE(sentence.starts_with("The scene as it is runs without anything broken, and its nearest limit is "))
       << sentence;
-  EXPECT_NE(sentence.find("breaks at"), std::string::npos) << sentence;
+  EXPECT_TRUE(contains(sentence, "breaks at")) << sentence;
 }
 
 TEST(SceneStability, ASceneThatBreaksSaysWhatHolds) {
@@ -124,8 +126,8 @@ TEST(SceneStability, MarginIsUpToTheFirstThatBreaks) {
   EXPECT_EQ(table[1],
             (std::vector<std::string>{"step", "more", "20 ms", "40 ms", "warned of", "energy comes from nowhere"}));
   const std::string svg = trial_svg("a < b", stability);
-  EXPECT_NE(svg.find("a &lt; b"), std::string::npos);
-  EXPECT_EQ(svg.find("a < b"), std::string::npos);
+  EXPECT_TRUE(contains(svg, "a &lt; b"));
+  EXPECT_FALSE(contains(svg, "a < b"));
 }
 
 class BenchStability : public support::TestFolder {};
@@ -137,7 +139,7 @@ TEST_F(BenchStability, ReportsASceneOfTheUser) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_TRUE(outcome.out.starts_with("The scene as it is runs without anything broken")) << outcome.out;
   const std::string page = support::read_bytes(folder_ / "b/stability_s.md");
-  EXPECT_NE(page.find(outcome.out.substr(0, outcome.out.find('\n'))), std::string::npos);
+  EXPECT_TRUE(contains(page, outcome.out.substr(0, outcome.out.find('\n'))));
   const std::string csv = support::read_bytes(folder_ / "b/stability_s.csv");
   EXPECT_TRUE(csv.starts_with("stiffness,step,mass,friction,damping,mesh,step_s,verdict,")) << csv;
   EXPECT_TRUE(support::read_bytes(folder_ / "b/stability_s.svg").starts_with("<svg "));

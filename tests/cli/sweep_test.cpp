@@ -191,7 +191,7 @@ TEST(SweepLabels, AreOneLine) {
 TEST(SweepLabels, AreNotCut) {
   SweepRun run;
   for (int i = 0; i < 50; ++i) run.difference.emplace_back(fmt::format("key{}", i), "0.123");
-  EXPECT_NE(label_of(run).find("key0=0.123  key1=0.123"), std::string::npos);
+  EXPECT_TRUE(contains(label_of(run), "key0=0.123  key1=0.123"));
   EXPECT_TRUE(label_of(run).ends_with("key49=0.123"));
 }
 
@@ -240,7 +240,7 @@ TEST_F(Sweeps, HaveTheVideosOfSingleRunsASheetATableAndAPage) {
   const std::string csv = table();
   EXPECT_TRUE(csv.starts_with("radius,step,exit code,CPU s,simulation CPU s,drawing CPU s,frames,Newton iterations,"))
       << csv;
-  EXPECT_NE(csv.find("\n0.11,0.01,0,"), std::string::npos) << csv;
+  EXPECT_TRUE(contains(csv, "\n0.11,0.01,0,")) << csv;
   EXPECT_EQ(std::ranges::count(csv, '\n'), 5);
   const image::Image sheet = image::read_png(folder_ / "w/sheet.png");
   EXPECT_GT(sheet.width, 2 * 64);
@@ -257,7 +257,7 @@ TEST_F(Sweeps, GoOnWithWhatIsNotDoneAndPassOverTheRest) {
   fs::remove(folder_ / "w/duration=0.08/s.json");
   const Outcome again = sweep(arguments);
   expect_exit(again, 0, "] duration=0.12: done already\n");
-  EXPECT_NE(again.err.find("duration=0.120: the same scene as duration=0.12\n"), std::string::npos) << again.err;
+  EXPECT_TRUE(contains(again.err, "duration=0.120: the same scene as duration=0.12\n")) << again.err;
   EXPECT_TRUE(fs::exists(folder_ / "w/duration=0.08/s.mp4"));
   EXPECT_EQ(fs::last_write_time(folder_ / "w/duration=0.12/s.mp4"), written);
   expect_exit(sweep({"--set", "time.duration=0.08,0.12", "--frames", "0:2"}), 6, "w: holds runs with other options");
@@ -298,7 +298,7 @@ TEST_F(Sweeps, RunsThatWereToBeRepeatedAreNotDoneUntilThen) {
   EXPECT_EQ(with({"nowhere", "--overwrite"}).exit_code, 2);
   const Outcome again = with({"nowhere"});
   EXPECT_EQ(again.exit_code, 2) << again.err;
-  EXPECT_EQ(again.err.find("done already"), std::string::npos) << again.err;
+  EXPECT_FALSE(contains(again.err, "done already")) << again.err;
 }
 
 TEST_F(Sweeps, AreNotReportedBeforeTheyBegin) {
@@ -313,15 +313,15 @@ TEST_F(Sweeps, NameTheRunsThatFailAndKeepTheOthers) {
       "[{name='w',position=[1,-1,1],target=[0,0,0.2]}]";
   const Outcome outcome = sweep({"--set", cameras, "--set", "time.duration=0.08", "--camera", "v"});
   expect_exit(outcome, 2, "exit code 2: weft: --camera: expected w, got v");
-  EXPECT_NE(outcome.err.find("weft: 1 of 2 runs failed:\n"), std::string::npos) << outcome.err;
-  EXPECT_NE(table().find(",2,,,,0,,,,,,,\"camera="), std::string::npos) << "figures of no frame: " << table();
+  EXPECT_TRUE(contains(outcome.err, "weft: 1 of 2 runs failed:\n")) << outcome.err;
+  EXPECT_TRUE(contains(table(), ",2,,,,0,,,,,,,\"camera=")) << "figures of no frame: " << table();
   EXPECT_TRUE(fs::exists(folder_ / "w/sheet.png"));
 }
 
 TEST_F(Sweeps, MistakesOfAnyRunEndThemBeforeTheFirst) {
   const Outcome outcome = sweep({"--set", "obstacle.ball.radius=0.1,-1", "--set", "cloth.cloth.position=[0,0,1],3"});
   expect_exit(outcome, 3, "--set obstacle.ball.radius=-1: ");
-  EXPECT_NE(outcome.err.find("--set cloth.cloth.position=3: "), std::string::npos) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "--set cloth.cloth.position=3: ")) << outcome.err;
   EXPECT_FALSE(fs::exists(folder_ / "w"));
   EXPECT_EQ(sweep({}).exit_code, 2);
   EXPECT_EQ(run_weft({"sweep", "s.toml", "-o", ".", "--set", kRadius}, folder_).exit_code, 2) << "holds the scene";
@@ -337,8 +337,7 @@ TEST_F(Sweeps, RefuseAFolderThatHoldsAFileOfALaterRun) {
 TEST_F(Sweeps, OfWhichNoneIsWellHaveAPageThatSaysWhyAndNoSheet) {
   expect_exit(sweep({"--set", "cloth.cloth.position=[0,0,0],[0,0,0.01]"}), 3,
               "w: table.md, table.csv, page/index.html\n");
-  EXPECT_NE(support::read_bytes(folder_ / "w/page/index.html").find("expected surfaces that are apart"),
-            std::string::npos);
+  EXPECT_TRUE(contains(support::read_bytes(folder_ / "w/page/index.html"), "expected surfaces that are apart"));
 }
 
 TEST_F(Sweeps, StopInOrderAndGoOnToTheSameVideos) {
