@@ -229,13 +229,9 @@ TEST(AccuracyOfASheet, ReferenceIsTheBetterKnownOfTwo) {
 }
 
 TEST(AccuracyOfASheet, FailsOnlyWithBothReferences) {
-  try {
+  support::expect_error(ExitCode::simulation_failed, "the reference run failed: ", [] {
     measure_accuracy(small_sheet({"solver.newton_iterations=1", "solver.halvings=0"}));
-    FAIL() << "one iteration is not enough";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::simulation_failed);
-    EXPECT_TRUE(contains(std::string(error.what()), "the reference run failed: ")) << error.what();
-  }
+  });
 }
 
 // A row of the table of runs. Units as in the table's header.

@@ -174,31 +174,23 @@ TEST(Film, SimulatesFramesThatAreNotWantedButDoesNotDrawThem) {
 }
 
 TEST(Film, GivesThePainterTheFrameBeforeWhereMotionIsAskedFor) {
-  Script script;
-  play(script, {3, 10, 3});
-  EXPECT_EQ(script.before, (std::vector<int>{-1, -1, -1}));
-  script.before.clear();
-  script.simulated.clear();
-  script.written.clear();
-  script.motion = true;
-  play(script, {3, 10, 3});
-  EXPECT_EQ(script.before, (std::vector<int>{0, 3, 6})) << "also before the first that is wanted";
-  script.before.clear();
-  script.simulated.clear();
-  script.written.clear();
-  script.motion = true;
-  play(script, {0, 3, 1});
-  EXPECT_EQ(script.before, (std::vector<int>{-1, 0, 1}));
+  const auto frames_before = [](bool motion, const FrameRange& wanted) {
+    Script script;
+    script.motion = motion;
+    play(script, wanted);
+    return script.before;
+  };
+  EXPECT_EQ(frames_before(false, {3, 10, 3}), (std::vector<int>{-1, -1, -1}));
+  EXPECT_EQ(frames_before(true, {3, 10, 3}), (std::vector<int>{0, 3, 6})) << "also before the first that is wanted";
+  EXPECT_EQ(frames_before(true, {0, 3, 1}), (std::vector<int>{-1, 0, 1}));
 }
 
 TEST(Film, EndsWithTheLastWantedFrame) {
-  Script script;
-  play(script, {0, 9, 4});
-  EXPECT_EQ(script.simulated, up_to(9));
-  script.simulated.clear();
-  script.written.clear();
-  play(script, {0, 8, 4});  // stop after frame 4, the last requested one
-  EXPECT_EQ(script.simulated, up_to(5));
+  Script whole, shorter;
+  play(whole, {0, 9, 4});
+  EXPECT_EQ(whole.simulated, up_to(9));
+  play(shorter, {0, 8, 4});  // stop after frame 4, the last requested one
+  EXPECT_EQ(shorter.simulated, up_to(5));
 }
 
 TEST(Film, KeepsAllGoodFramesWhenTheSimulationFails) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "support/test_folder.hpp"
 
 namespace weft::cli {
 namespace {
@@ -49,13 +50,8 @@ TEST(FrameRange, RefusesWhatIsNotARange) {
 }
 
 TEST(FrameRange, RefusesFramesThatTheSceneDoesNotHaveNamingThoseItHas) {
-  try {
-    resolve_frames(parse_frames("0:127"), 126);
-    FAIL() << "accepted a frame past the end";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::usage);
-    EXPECT_STREQ(error.what(), "--frames: expected a range within 0:126, the frames of this scene, got 0:127");
-  }
+  support::expect_error(ExitCode::usage, "--frames: expected a range within 0:126, the frames of this scene, got 0:127",
+                        [] { resolve_frames(parse_frames("0:127"), 126); });
   EXPECT_THROW(resolve_frames(parse_frames("126:"), 126), Error);
   EXPECT_NO_THROW(resolve_frames(parse_frames("125:"), 126));
 }
