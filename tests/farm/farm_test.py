@@ -6,14 +6,12 @@ farm_test.py WEFT    exits with 77 if Slurm is not installed.
 import csv
 import os
 import re
-import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 
-from slurm import Slurm, missing
+from slurm import Slurm, missing, queue_is_empty, run_test
 
 SCENE = """
 [time]
@@ -78,9 +76,6 @@ class Test:
     def submit(self, code=0, folder="farm", sweep=SWEEP):
         return self.run("farm", "submit", *sweep, "-o", folder, "--part", "8", code=code)
 
-    def queue_is_empty(self):
-        return not subprocess.run(["squeue", "-h"], capture_output=True, text=True, check=True).stdout
-
     def logs(self):
         folder = os.path.join(self.folder, "farm/farm/log")
         return b"".join(self.read(folder, log) for log in os.listdir(folder))
@@ -118,7 +113,7 @@ class Test:
             slurm.kill_node("n3", with_tasks=True)
             slurm.wait(lambda: self.done() >= 3, "the first runs", 300)
             self.run("farm", "cancel", "farm")
-            slurm.wait(self.queue_is_empty, "an empty queue")
+            slurm.wait(queue_is_empty, "an empty queue")
             code, text = self.status()
             assert code == 9 and 3 <= text.count("  done\n") < RUNS, text
             print("after cancel:", text.splitlines()[-1])
@@ -126,7 +121,7 @@ class Test:
             for node in ("n2", "n3"):
                 slurm.start_node(node)
             self.submit()
-            slurm.wait(lambda: self.status()[0] == 0 and self.queue_is_empty(), "all runs", 600)
+            slurm.wait(lambda: self.status()[0] == 0 and queue_is_empty(), "all runs", 600)
             print("at the end:", self.status()[1].splitlines()[-1])
             assert "all runs are done" in self.submit(), "nothing is done twice"
             self.fill_disk(slurm)
@@ -157,7 +152,7 @@ class Test:
             for room, task in ((caches // 2, "simulate_"), (caches + size("frames") // 2 + 2**19, "draw_")):
                 subprocess.run([*mount, f"remount,size={room}", "tmpfs", disk], check=True)
                 self.submit(folder="disk/farm", sweep=FILLING_SWEEP)
-                slurm.wait(self.queue_is_empty, "the end of what has no room", 300)
+                slurm.wait(queue_is_empty, "the end of what has no room", 300)
                 code, text = self.status("disk/farm")
                 print("on a full disk:", text, sep="\n")
                 # A task may have no space for its exit code either; `status` then asks whether the disk is full.
@@ -166,7 +161,7 @@ class Test:
             assert kept, "some pictures found room"
             subprocess.run([*mount, f"remount,size={4 * size() + 2**24}", "tmpfs", disk], check=True)
             self.submit(folder="disk/farm", sweep=FILLING_SWEEP)
-            slurm.wait(lambda: self.status("disk/farm")[0] == 0 and self.queue_is_empty(), "all runs, with room", 300)
+            slurm.wait(lambda: self.status("disk/farm")[0] == 0 and queue_is_empty(), "all runs, with room", 300)
             for file, changed in kept.items():
                 assert os.stat(os.path.join(disk, "farm", file)).st_mtime_ns == changed, f"{file} was made again"
             made = self.whole_files(names)
@@ -200,21 +195,5 @@ class Test:
             assert [picture for picture in pictures if picture.endswith(".png")] == expected, pictures
 
 
-def main(weft):
-    reason = missing()
-    if reason:
-        print(reason)
-        return 77
-    folder = tempfile.mkdtemp()
-    try:
-        os.mkdir(os.path.join(folder, "slurm"))
-        Test(weft, folder).check()
-    except AssertionError as problem:
-        print(f"{problem}; what there is lies in {folder}")
-        return 1
-    shutil.rmtree(folder)
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main(os.path.abspath(sys.argv[1])))
+    sys.exit(run_test(missing(), lambda folder: Test(os.path.abspath(sys.argv[1]), folder).check()))

@@ -9,9 +9,8 @@ import re
 import shutil
 import subprocess
 import sys
-import tempfile
 
-from slurm import Slurm, missing
+from slurm import Slurm, missing, queue_is_empty, run_test
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../packaging"))
 import archive  # pylint: disable=wrong-import-position
@@ -79,12 +78,10 @@ def check(source, weft, start, folder):
     shutil.copy(weft, os.path.join(folder, "copy"))
     assert "error while loading shared libraries" in run(*bare, os.path.join(folder, "copy"), "--version", code=127)
 
-    os.mkdir(os.path.join(folder, "slurm"))
     slurm = Slurm(os.path.join(folder, "slurm"), ["n1", "n2"], bare)
     try:
         run(weft, "farm", "submit", *SWEEP, "-o", "farm", "--part", "4", "--program", path)
-        slurm.wait(lambda: not subprocess.run(["squeue", "-h"], capture_output=True, text=True, check=True).stdout,
-                   "an empty queue", 300)
+        slurm.wait(queue_is_empty, "an empty queue", 300)
         print(run(weft, "farm", "status", "farm"))
     finally:
         slurm.stop()
@@ -98,20 +95,6 @@ def check(source, weft, start, folder):
     assert len(unpacked) == 1 and not unpacked[0].endswith(".tar"), unpacked
 
 
-def main(source, weft, start):
-    reason = missing() or archive.missing()
-    if reason:
-        print(reason)
-        return 77
-    folder = tempfile.mkdtemp()
-    try:
-        check(source, weft, start, folder)
-    except AssertionError as problem:
-        print(f"{problem}; what there is lies in {folder}")
-        return 1
-    shutil.rmtree(folder)
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main(*map(os.path.abspath, sys.argv[1:])))
+    paths = map(os.path.abspath, sys.argv[1:])
+    sys.exit(run_test(missing() or archive.missing(), lambda folder: check(*paths, folder)))

@@ -5,6 +5,7 @@ import shutil
 import signal
 import socket
 import subprocess
+import tempfile
 import time
 
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "squeue", "scancel", "scontrol")
@@ -52,6 +53,27 @@ def missing():
     if os.geteuid() != 0:
         return "a Slurm of one's own takes root"
     return ""
+
+
+def run_test(reason, check):
+    """Calls `check` with a new folder, which stays if an assertion fails. Returns the exit code of the test: 77 if a
+    `reason` is given why it cannot run here."""
+    if reason:
+        print(reason)
+        return 77
+    folder = tempfile.mkdtemp()
+    try:
+        os.mkdir(os.path.join(folder, "slurm"))
+        check(folder)
+    except AssertionError as problem:
+        print(f"{problem}; what there is lies in {folder}")
+        return 1
+    shutil.rmtree(folder)
+    return 0
+
+
+def queue_is_empty():
+    return not subprocess.run(["squeue", "-h"], capture_output=True, text=True, check=True).stdout
 
 
 def free_port():
