@@ -20,9 +20,7 @@ using cli::contains;
 using scene::Integrator;
 
 scene::Scene tiny_sheet(const std::vector<std::string>& more = {}) {
-  std::vector<std::string> overrides{"cloth.sheet.particles=5", "time.duration=0.08"};
-  overrides.insert(overrides.end(), more.begin(), more.end());
-  return support::scene_of_text(kSwingingSheet, overrides);
+  return support::scene_of_text(kSwingingSheet, cli::joined({"cloth.sheet.particles=5", "time.duration=0.08"}, more));
 }
 
 std::set<double> controls(const Accuracy& accuracy, Axis axis) {
@@ -261,9 +259,7 @@ TEST_F(BenchAccuracyPlan, OptionsDecideWhatThePageHas) {
 
 TEST_F(BenchAccuracyPlan, MistakesNameTheOptionAndWhatIsExpected) {
   const auto refused = [&](const std::vector<std::string>& words, const std::string& text) {
-    std::vector<std::string> all{"bench"};
-    all.insert(all.end(), words.begin(), words.end());
-    support::expect_error(ExitCode::usage, text, [&] { cli::parse_command_line(all); });
+    support::expect_error(ExitCode::usage, text, [&] { cli::parse_command_line(cli::joined({"bench"}, words)); });
   };
   refused({"accuracy", "--integrators", "euler"},
           "--integrators: expected implicit_euler or implicit_midpoint or bdf2");

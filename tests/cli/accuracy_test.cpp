@@ -164,9 +164,7 @@ TEST(Trajectories, MeshesFromElsewhereAreNotRefined) {
 
 // The swinging sheet, with fewer particles and a shorter duration.
 scene::Scene small_sheet(const std::vector<std::string>& more = {}) {
-  std::vector<std::string> overrides{"cloth.sheet.particles=6", "time.duration=0.2"};
-  overrides.insert(overrides.end(), more.begin(), more.end());
-  return support::scene_of_text(kSwingingSheet, overrides);
+  return support::scene_of_text(kSwingingSheet, cli::joined({"cloth.sheet.particles=6", "time.duration=0.2"}, more));
 }
 
 const Accuracy& measured() {

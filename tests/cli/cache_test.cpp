@@ -54,9 +54,8 @@ TEST_F(CachedRun, VideoFromACacheIsThatOfRun) {
 TEST_F(CachedRun, OddSizesOfVideosAreTold) {
   expect_well({"simulate", "s.toml", "--cache", "c", "--frames", "0:2"});
   const auto reported_size = [&](const std::string& size, const Arguments& more) {
-    Arguments arguments{"render", "c", "--size", size, "--partial", "--overwrite", "-o"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const Outcome outcome = run_weft(arguments, folder_);
+    const Outcome outcome =
+        run_weft(joined({"render", "c", "--size", size, "--partial", "--overwrite", "-o"}, more), folder_);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     const auto at = outcome.err.find("the video gets ");
     return at == std::string::npos ? "" : outcome.err.substr(at + 15, outcome.err.find(',', at) - at - 15);
@@ -73,10 +72,9 @@ TEST_F(CachedRun, FourProcessesAtOnceRenderTheQuartersOfOneCache) {
   expect_well({"render", "c", "-o", std::string("whole/") + kPictures});
   std::vector<std::unique_ptr<Subprocess>> processes;
   for (const char* frames : {"15:21", "10:15", "0:5", "5:10"})
-    processes.push_back(
-        std::make_unique<Subprocess>(Arguments{"render", "c", "-o", std::string("parts/") + kPictures, "--frames",
-                                               frames, "--size", "64x36", "--quality", "draft", "--progress", "none"},
-                                     folder_, 0, Subprocess::Start::fork));
+    processes.push_back(std::make_unique<Subprocess>(
+        joined({"render", "c", "-o", std::string("parts/") + kPictures, "--frames", frames}, kSmall), folder_, 0,
+        Subprocess::Start::fork));
   for (const auto& process : processes) {
     expect_exit(process->wait(), 0);
   }
@@ -136,10 +134,7 @@ TEST_F(CachedRun, ChangedLooksGoOnAndDressWhatWasKept) {
   const Arguments looks{
       "--set", "cloth.cloth.look.color=[1,0,0]", "--set",
       "camera=[{name='v',target=[0,0,0],keys=[{time=0,position=[1,-2,1]},{time=0.8,position=[2,-1,1]}]}]"};
-  const auto with_looks = [&](Arguments arguments) {
-    arguments.insert(arguments.end(), looks.begin(), looks.end());
-    return arguments;
-  };
+  const auto with_looks = [&](const Arguments& arguments) { return joined(arguments, looks); };
   expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":8"});
   expect_well(with_looks({"simulate", "s.toml", "--cache", "c", "--resume"}));
   expect_well(with_looks({"simulate", "s.toml", "--cache", "whole"}));
@@ -154,13 +149,12 @@ TEST_F(CachedRun, ChangedLooksGoOnAndDressWhatWasKept) {
 
 TEST_F(CachedRun, StoredFramesGetTheAngleOfALensForTheSizeOfTheRunThatGoesOn) {
   const auto simulate = [&](const Arguments& more) {
-    Arguments arguments{"simulate",   "s.toml",
-                        "--cache",    "c",
-                        "--quality",  "draft",
-                        "--progress", "none",
-                        "--set",      "camera=[{name='v',position=[1,-2,1],target=[0,0,0],focal_length=50}]"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    expect_exit(run_weft(arguments, folder_), 0);
+    const Arguments arguments{"simulate",   "s.toml",
+                              "--cache",    "c",
+                              "--quality",  "draft",
+                              "--progress", "none",
+                              "--set",      "camera=[{name='v',position=[1,-2,1],target=[0,0,0],focal_length=50}]"};
+    expect_exit(run_weft(joined(arguments, more), folder_), 0);
   };
   simulate({"--size", "64x36", "--frames", ":8"});
   simulate({"--size", "36x64", "--frames", ":3", "--resume"});
@@ -374,10 +368,8 @@ TEST_F(CachedRun, InterruptedWithinALongFrameSimulationKeepsTheFramesBefore) {
 }
 
 TEST_F(CachedRun, FullDiskEndsASimulationButOnlyTheCacheOfARun) {
-  const Arguments common{"--size", "64x36", "--quality", "draft", "--progress", "none"};
-  const auto limited = [&](Arguments arguments, std::size_t bytes) {
-    arguments.insert(arguments.end(), common.begin(), common.end());
-    return Subprocess(arguments, folder_, bytes).wait();
+  const auto limited = [&](const Arguments& arguments, std::size_t bytes) {
+    return Subprocess(joined(arguments, kSmall), folder_, bytes).wait();
   };
   expect_exit(limited({"simulate", "s.toml", "--cache", "c"}, 3000), 6, "cannot be written: File too large");
   // The limit of the file size allows pictures of a few kilobytes, but not states.

@@ -49,10 +49,8 @@ void CachedRun::SetUp() {
   support::write_bytes(folder_ / "s.toml", kFallOnBall);
 }
 
-Outcome CachedRun::weft(Arguments arguments) const {
-  if (arguments[0] != "check")
-    arguments.insert(arguments.end(), {"--size", "64x36", "--quality", "draft", "--progress", "none"});
-  return run_weft(arguments, folder_);
+Outcome CachedRun::weft(const Arguments& arguments) const {
+  return run_weft(joined(arguments, kSmall), folder_);
 }
 
 void CachedRun::expect_well(const Arguments& arguments) const {

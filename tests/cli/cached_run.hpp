@@ -19,7 +19,7 @@ class CachedRun : public support::TestFolder {
   void SetUp() override;
 
   /// Runs `weft command...` with small, quick settings in the folder of the test.
-  Outcome weft(Arguments arguments) const;
+  Outcome weft(const Arguments& arguments) const;
   void expect_well(const Arguments& arguments) const;
 
   /// Contents of the files below a folder whose names end with `ending`, by name. Working caches are left out.

@@ -20,9 +20,7 @@ using namespace run_error;
 using cli::contains;
 
 scene::Scene swinging(const std::vector<std::string>& more = {}) {
-  std::vector<std::string> overrides{"cloth.sheet.particles=9", "time.duration=0.4"};
-  overrides.insert(overrides.end(), more.begin(), more.end());
-  return support::scene_of_text(kSwingingSheet, overrides);
+  return support::scene_of_text(kSwingingSheet, cli::joined({"cloth.sheet.particles=9", "time.duration=0.4"}, more));
 }
 
 double part_of(const ErrorEstimate& estimate, ErrorSource source, Quantity quantity = Quantity::position) {

@@ -188,8 +188,7 @@ TEST_F(Completeness, RenderDoesNotGoOnWithPicturesDrawnWithAnOptionThatIsNotGive
   expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":2"});
   for (const Arguments& option : {Arguments{"--look", "clay"}, {"--motion-blur", "90"}, {"--depth", "16"}}) {
     const Arguments without{"render", "c", "-o", option[0] + "/{frame:05}.png", "--frames", ":2", "--resume"};
-    Arguments with = without;
-    with.insert(with.end(), option.begin(), option.end());
+    const Arguments with = joined(without, option);
     expect_well(with);
     const Outcome again = weft(with), refused = weft(without);
     expect_exit(again, 0, "is complete already: frames 0:2");
@@ -247,9 +246,7 @@ TEST_F(Completeness, VideoThatWasStoppedIsDrawnAnewAndAnotherIsKept) {
   if (process.wait().exit_code == 0) GTEST_SKIP() << "it was done before the signal came";
   EXPECT_LT(probe_video(folder_ / "a.mp4").frames, kFrames);
   const auto render = [&](const Arguments& more) {
-    Arguments arguments{"render", "c", "-o", "a.mp4", "--size", "640x360", "--progress", "none"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_weft(arguments, folder_);
+    return run_weft(joined({"render", "c", "-o", "a.mp4", "--size", "640x360", "--progress", "none"}, more), folder_);
   };
   EXPECT_EQ(render({"--resume", "--quality", "draft"}).exit_code, 6) << "another film has this name";
   EXPECT_EQ(render({"--resume"}).exit_code, 0);
@@ -279,10 +276,7 @@ class Joining : public Completeness {
   void draw(const std::string& output, const std::string& frames) const {
     expect_well({"render", "c", "-o", output, "--frames", frames, "--overwrite"});
   }
-  Outcome join(Arguments arguments) const {
-    arguments.insert(arguments.begin(), "join");
-    return run_weft(arguments, folder_);
-  }
+  Outcome join(const Arguments& arguments) const { return run_weft(joined({"join"}, arguments), folder_); }
   void expect_joined(const Arguments& arguments) const { expect_exit(join(arguments), 0); }
   void expect_refused(const Arguments& arguments, int code, const std::string& message) const {
     expect_exit(join(arguments), code, message);

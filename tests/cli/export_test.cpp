@@ -28,11 +28,7 @@ std::string without_uv(const std::string& ply) {
 
 class ExportCommand : public CachedRun {
  protected:
-  Outcome exported(const Arguments& more) const {
-    Arguments arguments{"export"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_weft(arguments, folder_);
-  }
+  Outcome exported(const Arguments& more) const { return run_weft(joined({"export"}, more), folder_); }
   void expect_exported(const Arguments& more) const { expect_exit(exported(more), 0); }
 };
 
@@ -116,9 +112,7 @@ TEST_F(ExportCommand, InterruptedSaysHowFarItIsAndLeavesWholeFiles) {
 TEST_F(ExportCommand, RefusesWithTheCodesOfTheContract) {
   expect_well({"simulate", "s.toml", "--cache", "c", "--frames", "0:3"});
   const auto gltf = [&](const Arguments& more) {
-    Arguments arguments{"c", "--format", "gltf", "-o", "out"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return exported(arguments);
+    return exported(joined({"c", "--format", "gltf", "-o", "out"}, more));
   };
   EXPECT_EQ(gltf({}).exit_code, 9) << "3 of 21 frames are there";
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));

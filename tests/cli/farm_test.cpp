@@ -19,17 +19,14 @@ class Farms : public CachedRun {
  protected:
   static constexpr const char* kRadius = "obstacle.ball.radius=0.1,0.11";
 
-  Outcome farm(Arguments more) const {
-    more.insert(more.begin(), "farm");
-    return run_weft(more, folder_);
-  }
+  Outcome farm(const Arguments& more) const { return run_weft(joined({"farm"}, more), folder_); }
   /// Submits fewer frames than the scene has; the camera is computed from all frames of the scene.
   Outcome submit(const Arguments& more = {}) const {
-    Arguments arguments{"submit",    "s.toml",   "-o",       "a b",    "--set",  kRadius, "--size", "64x36",
-                        "--quality", "draft",    "--frames", "0:19:2", "--part", "4",     "--set",  "time.duration=0.8",
-                        "--dry-run", "--memory", "100",      "--time", "10"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return farm(arguments);
+    const Arguments arguments{
+        "submit",    "s.toml",   "-o",       "a b",    "--set",  kRadius, "--size", "64x36",
+        "--quality", "draft",    "--frames", "0:19:2", "--part", "4",     "--set",  "time.duration=0.8",
+        "--dry-run", "--memory", "100",      "--time", "10"};
+    return farm(joined(arguments, more));
   }
   /// Runs all tasks of `farm/tasks.tsv` in order, and returns the exit codes that are not 0.
   std::vector<int> do_tasks(const std::string& environment = "") const {

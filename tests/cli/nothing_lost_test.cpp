@@ -23,11 +23,7 @@ namespace fs = std::filesystem;
 
 class NothingLost : public CachedRun {
  protected:
-  Arguments with(Arguments arguments) const {
-    arguments.insert(arguments.end(),
-                     {"--size", "64x36", "--quality", "draft", "--progress", "none", "--log-json", "-"});
-    return arguments;
-  }
+  Arguments with(const Arguments& arguments) const { return joined(joined(arguments, kSmall), {"--log-json", "-"}); }
 
   /// Starts the command, calls `disturb` while it works, and waits for its end.
   Outcome disturbed(const Arguments& arguments, const std::function<void()>& disturb) const {
@@ -129,8 +125,7 @@ TEST_F(NothingLost, PartialWithOverwriteLeavesTheFramesThatItDoesNotMake) {
       exported{"export", "c", "--format", "ply", "-o", "e"};
   const auto make = [&](const Arguments& more) {
     for (const Arguments& command : {render, exported}) {
-      Arguments arguments = command;
-      arguments.insert(arguments.end(), more.begin(), more.end());
+      const Arguments arguments = joined(command, more);
       expect_exit(command == render ? weft(arguments) : run_weft(arguments, folder_), 0);
     }
   };

@@ -39,13 +39,8 @@ struct Command {
                                 ///< folder itself
 };
 
-const Arguments kSmall{"--size", "32x32", "--quality", "draft", "--progress", "none"};
-
 std::vector<Command> commands() {
-  const auto small = [](Arguments arguments) {
-    arguments.insert(arguments.end(), kSmall.begin(), kSmall.end());
-    return arguments;
-  };
+  const auto small = [](const Arguments& arguments) { return joined(arguments, kSmall); };
   return {
       {"run", small({"run", "s.toml", "-o", "@", "--stats", "stats.mp4"}), "-o FILE", "new.mp4", "s.mp4", "stats.mp4"},
       {"run", small({"run", "s.toml", "-o", "@", "--stats", "p/1.png"}), "-o PATTERN", "n/{frame}.png", "i/{frame}.png",
@@ -246,8 +241,7 @@ TEST_F(Paths, OverwrittenUnderOneNameAFileKeepsWhatItHoldsUnderAnother) {
     for (const std::string& name : {"x" + link, "x" + hard}) {
       Arguments arguments{"run", "s.toml", option, name, "--overwrite"};
       if (option != std::string("-o")) arguments.insert(arguments.end(), {"-o", "d.mp4"});
-      arguments.insert(arguments.end(), kSmall.begin(), kSmall.end());
-      expect_exit(run_weft(arguments, folder_), 0);
+      expect_exit(run_weft(joined(arguments, kSmall), folder_), 0);
       EXPECT_EQ(support::read_bytes(folder_ / "precious"), "precious") << name;
       EXPECT_NE(support::read_bytes(folder_ / name), "precious") << name;
     }

@@ -63,11 +63,7 @@ class Program : public support::TestFolder {
   }
 
   // Small and quick settings, followed by the options in `more`.
-  Arguments run_arguments(const Arguments& more = {}) const {
-    Arguments arguments{"run", "s.toml", "--size", "64x36", "--quality", "draft", "--progress", "none"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
-  }
+  Arguments run_arguments(const Arguments& more = {}) const { return joined(joined({"run", "s.toml"}, kSmall), more); }
   Outcome run(const Arguments& more = {}) const { return run_weft(run_arguments(more), folder_); }
 
   // All files below the folder, relative to it; for a working cache only the folder itself.
@@ -368,11 +364,8 @@ TEST_F(Program, PlanNamesWhatIsLeftOut) {
 }
 
 TEST_F(Program, ThumbnailDrawsTheFrameThatWasAskedFor) {
-  const Arguments small{"--size", "64x36", "--quality", "draft", "--progress", "none"};
-  const auto thumbnail = [&](Arguments arguments) {
-    arguments.insert(arguments.begin(), {"thumbnail", "s.toml"});
-    arguments.insert(arguments.end(), small.begin(), small.end());
-    return run_weft(arguments, folder_);
+  const auto thumbnail = [&](const Arguments& more) {
+    return run_weft(joined(joined({"thumbnail", "s.toml"}, more), kSmall), folder_);
   };
   EXPECT_EQ(thumbnail({"--frame", "2"}).exit_code, 0);
   EXPECT_EQ(thumbnail({"-o", "end.png", "--frame", "4"}).exit_code, 0);
@@ -389,9 +382,8 @@ TEST_F(Program, ThumbnailDrawsTheFrameThatWasAskedFor) {
 
 TEST_F(Program, ThumbnailEqualsThatFrameOfARun) {
   ASSERT_EQ(run({"-o", "{frame}.png"}).exit_code, 0);
-  Arguments arguments{"thumbnail", "s.toml", "-o", "t.png", "--frame", "3", "--size", "64x36", "--quality", "draft"};
-  arguments.insert(arguments.end(), {"--camera", "front", "--progress", "none"});
-  ASSERT_EQ(run_weft(arguments, folder_).exit_code, 0);
+  const Arguments arguments{"thumbnail", "s.toml", "-o", "t.png", "--frame", "3", "--camera", "front"};
+  ASSERT_EQ(run_weft(joined(arguments, kSmall), folder_).exit_code, 0);
   EXPECT_EQ(image::read_png(folder_ / "t.png").rgb, image::read_png(folder_ / "3.png").rgb);
 }
 
@@ -430,9 +422,7 @@ class Interrupted : public Program {
  protected:
   // Arguments for an hour of video, so that the run cannot end by itself.
   Arguments endless(const Arguments& more) const {
-    Arguments arguments = run_arguments({"--set", "time.duration=3600", "--log-json", "-"});
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
+    return run_arguments(joined({"--set", "time.duration=3600", "--log-json", "-"}, more));
   }
 };
 

@@ -56,10 +56,8 @@ class Robustness : public CachedRun {
     return false;
   }
 
-  const Arguments run_{"run",    "s.toml", "-o",    "v/a.mp4",   "--meshes", "m",          "--stats",
-                       "s.json", "--size", "64x36", "--quality", "draft",    "--progress", "none"};
-  const Arguments pictures_{"run",   "s.toml",    "-o",    "p/{frame}.png", "--size",
-                            "64x36", "--quality", "draft", "--progress",    "none"};
+  const Arguments run_ = joined({"run", "s.toml", "-o", "v/a.mp4", "--meshes", "m", "--stats", "s.json"}, kSmall);
+  const Arguments pictures_ = joined({"run", "s.toml", "-o", "p/{frame}.png"}, kSmall);
   const Arguments simulate_{"simulate", "s.toml", "--cache", "c", "--progress", "none"};
 };
 

@@ -139,10 +139,7 @@ TEST_F(Stills, SceneWhoseClothIsNeverSeenIsDrawnWithAWarning) {
 // the place in red.
 TEST_F(Stills, OfAStartThatIsRefusedShowInRedWhatMeets) {
   const Arguments low{"--set", "cloth.cloth.position=[0,0,0.02]"};
-  const auto with = [&](Arguments arguments) {
-    arguments.insert(arguments.end(), low.begin(), low.end());
-    return weft(arguments);
-  };
+  const auto with = [&](const Arguments& arguments) { return weft(joined(arguments, low)); };
   const Outcome refused = with({"run", "s.toml", "-o", "r.mp4"}),
                 checked = run_weft({"check", "s.toml", low[0], low[1]}, folder_);
   EXPECT_EQ(refused.exit_code, 3);

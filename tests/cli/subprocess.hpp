@@ -48,6 +48,15 @@ inline bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
+/// The words of both lists.
+inline std::vector<std::string> joined(std::vector<std::string> words, const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+/// Options with which drawing takes little time.
+inline const std::vector<std::string> kSmall{"--size", "64x36", "--quality", "draft", "--progress", "none"};
+
 /// Runs one command. If the test has one thread, a fork of it calls the function that main() calls. This saves loading
 /// the program and its libraries: 0.15 to 0.3 CPU s. Builds with sanitizers always execute WEFT_PROGRAM.
 Outcome run_weft(const std::vector<std::string>& arguments, const std::filesystem::path& folder);

@@ -222,9 +222,8 @@ TEST_F(SweepSheet, OfAnEarlierSweepDoesNotStayIfNoRunHasAPicture) {
 class Sweeps : public CachedRun {
  protected:
   static constexpr const char* kRadius = "obstacle.ball.radius=0.1,0.11";
-  Arguments with_sweep(Arguments more) const {
-    more.insert(more.begin(), {"sweep", "s.toml", "-o", "w", "--size", "64x36", "--quality", "draft"});
-    return more;
+  Arguments with_sweep(const Arguments& more) const {
+    return joined({"sweep", "s.toml", "-o", "w", "--size", "64x36", "--quality", "draft"}, more);
   }
   Outcome sweep(const Arguments& more) const { return run_weft(with_sweep(more), folder_); }
   std::string table() const { return support::read_bytes(folder_ / "w/table.csv"); }
@@ -269,9 +268,7 @@ TEST_F(Sweeps, GoOnWithWhatIsNotDoneAndPassOverTheRest) {
 TEST_F(Sweeps, GoOnWithAnotherNumberOfThreads) {
   ASSERT_EQ(sweep({"--set", "time.duration=0.08", "--threads", "2"}).exit_code, 0);
   for (const Arguments& threads : {Arguments{}, Arguments{"--threads", "1"}}) {
-    Arguments arguments{"--set", "time.duration=0.08"};
-    arguments.insert(arguments.end(), threads.begin(), threads.end());
-    expect_exit(sweep(arguments), 0, "duration=0.08: done already\n");
+    expect_exit(sweep(joined({"--set", "time.duration=0.08"}, threads)), 0, "duration=0.08: done already\n");
   }
   expect_exit(run_weft({"farm", "submit", "s.toml", "-o", "w", "--size", "64x36", "--quality", "draft", "--set",
                         "time.duration=0.08", "--dry-run"},
@@ -290,10 +287,7 @@ TEST_F(Sweeps, AFolderInThePlaceOfAVideoIsNoRunThatIsDone) {
 
 TEST_F(Sweeps, RunsThatWereToBeRepeatedAreNotDoneUntilThen) {
   const Arguments arguments{"--set", "time.duration=0.08,0.12", "--camera"};
-  const auto with = [&](Arguments more) {
-    more.insert(more.begin(), arguments.begin(), arguments.end());
-    return sweep(more);
-  };
+  const auto with = [&](const Arguments& more) { return sweep(joined(arguments, more)); };
   EXPECT_EQ(sweep({"--set", "time.duration=0.08,0.12"}).exit_code, 0);
   EXPECT_EQ(with({"nowhere", "--overwrite"}).exit_code, 2);
   const Outcome again = with({"nowhere"});
