@@ -31,6 +31,15 @@ void add_value(CLI::App& command, const char* name, const char* value, const std
   command.add_option_function<std::string>(name, read, description)->type_name(value);
 }
 
+void add_passed_on(CLI::App& command, std::vector<std::string>& passed_on, const char* name, const char* value,
+                   const std::string& description, std::function<void(const std::string&)> read) {
+  const std::string names = name, first = names.substr(0, names.find(','));
+  add_value(command, name, value, description, [&passed_on, first, read](const std::string& text) {
+    read(text);
+    passed_on.insert(passed_on.end(), {first, text});
+  });
+}
+
 void add_backend(CLI::App& command, render::Backend& backend) {
   add_value(command, "--backend", "auto|osmesa|egl", "Library that makes the OpenGL context [auto]",
             [&](const std::string& text) { backend = parse_choice("--backend", text, kBackends); });

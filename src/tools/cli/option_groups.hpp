@@ -35,6 +35,10 @@ inline constexpr const char* kSceneOrCache = "The scene, a TOML file, or the fol
 void add_value(CLI::App& command, const char* name, const char* value, const std::string& description,
                std::function<void(const std::string&)> read);
 
+/// The same for an option that another command gets: `passed_on` receives its first name and its text.
+void add_passed_on(CLI::App& command, std::vector<std::string>& passed_on, const char* name, const char* value,
+                   const std::string& description, std::function<void(const std::string&)> read);
+
 /// Adds --set.
 void add_overrides(CLI::App& command, std::vector<std::string>& overrides);
 void add_backend(CLI::App& command, render::Backend& backend);

@@ -77,9 +77,7 @@ void Parser::add_simulate() {
 
 void Parser::add_render() {
   CLI::App& command = *app.add_subcommand("render", "Draw the frames of a cache");
-  command.add_option("CACHE", render.common.scene, "Folder of the cache that weft simulate wrote")
-      ->required()
-      ->type_name("");
+  add_argument(command, "CACHE", render.common.scene, "Folder of the cache that weft simulate wrote");
   add_output(command, render);
   add_frames(command, render, "Draw frames A to B - 1, counted from 0 [all]");
   add_picture(command, render.common);
@@ -100,7 +98,7 @@ void Parser::add_render() {
 
 void Parser::add_thumbnail() {
   CLI::App& command = *app.add_subcommand("thumbnail", "Draw one still of each scene or cache");
-  command.add_option("SCENE", thumbnail.scenes, "Scenes, TOML files, or folders of caches")->required()->type_name("");
+  add_argument(command, "SCENE", thumbnail.scenes, "Scenes, TOML files, or folders of caches");
   add_value(command, "-o,--output", "FILE.png|DIR", "The picture, or the folder of <scene>.png [output/<scene>.png]",
             [this](const std::string& text) { thumbnail.output = text; });
   add_value(command, "--frame", "N", "Frame to draw, counted from 0 [the most informative one]",
@@ -135,9 +133,7 @@ void Parser::add_sheet() {
 void Parser::add_join() {
   CLI::App& command = *app.add_subcommand("join", "Join videos, or folders of pictures, to one video");
   command.alias("encode");
-  command.add_option("PART", join.parts, "Videos, or folders of pictures, that weft has drawn; in any order")
-      ->required()
-      ->type_name("");
+  add_argument(command, "PART", join.parts, "Videos, or folders of pictures, that weft has drawn; in any order");
   command.add_option("-o,--output", join.output, "The video")->required()->type_name("FILE");
   add_video(command, join.video);
   add_value(command, "--frames", "A:B[:STEP]", "Frames A to B - 1, counted from 0 [all of the scene]",

@@ -9,6 +9,12 @@
 
 namespace weft::cli {
 
+/// Adds a required argument without a placeholder.
+template <class Value>
+void add_argument(CLI::App& command, const char* name, Value& value, const char* description) {
+  command.add_option(name, value, description)->required()->type_name("");
+}
+
 struct Parser {
   CLI::App app{"Weft: cloth scenes to video, on any machine, without a window.", "weft"};
   RunOptions run;

@@ -18,12 +18,8 @@ std::string check_choice(const char* name, const std::string& text, const std::v
 
 void Parser::add_new() {
   CLI::App& command = *app.add_subcommand("new", "Write a first scene to start from");
-  command
-      .add_option(
-          "NAME", new_scene.name,
-          "Name of the scene: writes NAME.toml, and the schema beside it; with --template ci, name of the folder")
-      ->required()
-      ->type_name("");
+  add_argument(command, "NAME", new_scene.name,
+               "Name of the scene: writes NAME.toml, and the schema beside it; with --template ci, name of the folder");
   add_value(command, "--template", fmt::format("{}", fmt::join(template_names(), "|")).c_str(),
             fmt::format("Kind of scene [{}]", new_scene.kind),
             [this](const std::string& text) { new_scene.kind = check_choice("--template", text, template_names()); });
@@ -38,16 +34,8 @@ void Parser::add_new() {
 
 void Parser::add_watch() {
   CLI::App& command = *app.add_subcommand("watch", "Draw a scene again whenever one of its files changes");
-  command.add_option("SCENE", watch.scene, "The scene, a TOML file")->required()->type_name("");
-  const auto passed_on = [&](const char* name, const char* value, const std::string& description,
-                             std::function<void(const std::string&)> examine) {
-    const std::string_view names = name;
-    const std::string first(names.substr(0, names.find(',')));
-    add_value(command, name, value, description, [this, first, examine](const std::string& text) {
-      examine(text);
-      watch.passed_on.insert(watch.passed_on.end(), {first, text});
-    });
-  };
+  add_argument(command, "SCENE", watch.scene, "The scene, a TOML file");
+  const auto passed_on = std::bind_front(add_passed_on, std::ref(command), std::ref(watch.passed_on));
   const auto anything = [](const std::string&) {};
   passed_on("--output,-o", "FILE.png|FILE.mp4", "Picture or video [output/<scene>.watch.png, with --film .watch.mp4]",
             anything);

@@ -28,13 +28,7 @@ void add_runs(CLI::App& command, SweepOptions& sweep, FrameSelection* frames) {
   command.add_option("-o,--output", sweep.output, "Folder of all runs")->type_name("DIR");
   add_value(command, "--frame", "N", "Picture of each video that the sheet shows, counted from 0 [the last]",
             [&sweep](const std::string& text) { sweep.frame = parse_integer("--frame", text, 0, 1'000'000'000); });
-  const auto passed_on = [&](const char* name, const char* value, const char* description,
-                             std::function<void(const std::string&)> examine) {
-    add_value(command, name, value, description, [&sweep, name, examine](const std::string& text) {
-      examine(text);
-      sweep.passed_on.insert(sweep.passed_on.end(), {name, text});
-    });
-  };
+  const auto passed_on = std::bind_front(add_passed_on, std::ref(command), std::ref(sweep.passed_on));
   passed_on("--frames", "A:B[:STEP]", "Draw frames A to B - 1, counted from 0 [all]",
             [frames](const std::string& text) {
               const FrameSelection selection = parse_frames(text);
@@ -57,16 +51,14 @@ void add_runs(CLI::App& command, SweepOptions& sweep, FrameSelection* frames) {
 void Parser::add_sweep() {
   CLI::App& command =
       *app.add_subcommand("sweep", "Run a scene with many values, and compare them on a sheet and in a table");
-  command.add_option("SCENE", sweep.scene, "The scene, a TOML file")->required()->type_name("");
+  add_argument(command, "SCENE", sweep.scene, "The scene, a TOML file");
   add_runs(command, sweep, nullptr);
   command.get_option("--output")->required();
   add_value(command, "--jobs", "N", "Number of runs at the same time [1]",
             [this](const std::string& text) { sweep.jobs = parse_integer("--jobs", text, 1, kMaxThreads); });
-  add_value(command, "--threads", "N", "Maximum number of threads of each run [all cores]; results do not depend on it",
-            [this](const std::string& text) {
-              parse_integer("--threads", text, 1, kMaxThreads);
-              sweep.passed_on.insert(sweep.passed_on.end(), {"--threads", text});
-            });
+  add_passed_on(command, sweep.passed_on, "--threads", "N",
+                "Maximum number of threads of each run [all cores]; results do not depend on it",
+                [](const std::string& text) { parse_integer("--threads", text, 1, kMaxThreads); });
   command.add_flag("--report", sweep.only_report,
                    "Run nothing; only make sheet, table and page of the runs that exist");
   command.add_flag("--overwrite", sweep.overwrite, "Repeat all runs, finished ones included");
@@ -90,10 +82,8 @@ void Parser::add_farm() {
           "keep what is finished")
       ->required()
       ->type_name("submit|status|cancel");
-  command
-      .add_option("SCENE|DIR", farm.sweep.scene, "For submit: the scene, a TOML file; otherwise the folder of the runs")
-      ->required()
-      ->type_name("");
+  add_argument(command, "SCENE|DIR", farm.sweep.scene,
+               "For submit: the scene, a TOML file; otherwise the folder of the runs");
   add_runs(command, farm.sweep, &farm.frames);
   add_value(command, "--part", "N", fmt::format("Frames that one task draws [{}]", farm.part),
             [this](const std::string& text) { farm.part = parse_integer("--part", text, 1, 1'000'000); });

@@ -32,7 +32,7 @@ std::vector<double> parse_values(const char* option, const std::string& text,
 
 void Parser::add_check() {
   CLI::App& command = *app.add_subcommand("check", "Print every mistake of one or more scenes");
-  command.add_option("SCENE", check.scenes, "Scenes, TOML files")->required()->type_name("");
+  add_argument(command, "SCENE", check.scenes, "Scenes, TOML files");
   command.add_flag("--plan", check.plan,
                    "Also print which parts of the program the scene needs, and which it does not");
   command.add_flag("--estimate", check.estimate,
@@ -144,8 +144,8 @@ void Parser::add_bench() {
 
 void Parser::add_diff() {
   CLI::App& command = *app.add_subcommand("diff", "Compare pictures, videos, or folders of them");
-  command.add_option("REFERENCE", diff.reference, "The reference: .png, video or folder")->required()->type_name("");
-  command.add_option("TEST", diff.test, "The result to compare, likewise")->required()->type_name("");
+  add_argument(command, "REFERENCE", diff.reference, "The reference: .png, video or folder");
+  add_argument(command, "TEST", diff.test, "The result to compare, likewise");
   int& limit = diff.limits.pixel_tolerance;
   add_value(command, "--pixel-tolerance", "N",
             fmt::format("Levels, out of 255, by which a pixel may differ [{}]", limit),
@@ -190,10 +190,8 @@ void Parser::add_diff() {
 
 void Parser::add_accept() {
   CLI::App& command = *app.add_subcommand("accept", "Accept pictures as the new references, and record why");
-  command.add_option("REFERENCE", accept.reference, "The reference, or its folder")->required()->type_name("");
-  command.add_option("TEST", accept.tests, "The new pictures or videos, each by name, or folders of them")
-      ->required()
-      ->type_name("");
+  add_argument(command, "REFERENCE", accept.reference, "The reference, or its folder");
+  add_argument(command, "TEST", accept.tests, "The new pictures or videos, each by name, or folders of them");
   command.add_option("--reason", accept.reason, "Reason of the change, which is kept in accepted.md")
       ->required()
       ->type_name("TEXT");
@@ -205,9 +203,7 @@ void Parser::add_accept() {
 
 void Parser::add_review() {
   CLI::App& command = *app.add_subcommand("review", "Write a page to review runs, which opens in any browser");
-  command.add_option("DIR", review.folders, "Folders with videos and statistics of weft run")
-      ->required()
-      ->type_name("");
+  add_argument(command, "DIR", review.folders, "Folders with videos and statistics of weft run");
   add_value(command, "-o,--output", "DIR", "Folder of the page [output/review]",
             [this](const std::string& text) { review.output = text; });
   add_value(command, "--reference", "DIR", "Folder with runs of the same names to compare with",
@@ -222,9 +218,7 @@ void Parser::add_review() {
 
 void Parser::add_export() {
   CLI::App& command = *app.add_subcommand("export", "Write the frames of a cache as files for other programs");
-  command.add_option("CACHE", export_frames.cache, "Folder of the cache that weft simulate wrote")
-      ->required()
-      ->type_name("");
+  add_argument(command, "CACHE", export_frames.cache, "Folder of the cache that weft simulate wrote");
   add_value(command, "--format", "ply|obj|pc2|gltf|usd|usdz|blender", "Format of the files [gltf]",
             [this](const std::string& text) { export_frames.format = parse_choice("--format", text, kFormats); });
   command.add_option("-o,--output", export_frames.output, "Folder of the files")->required()->type_name("DIR");
