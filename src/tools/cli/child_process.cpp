@@ -73,6 +73,12 @@ std::filesystem::path own_program() {
   return program;
 }
 
+std::string quoted(const std::string& text) {
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? "'\\''" : std::string(1, c);
+  return word + "'";
+}
+
 pid_t start_process(const std::vector<std::string>& arguments, const std::filesystem::path& log) {
   Outputs outputs;
   if (!log.empty()) {

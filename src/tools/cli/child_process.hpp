@@ -16,6 +16,9 @@ inline constexpr const char* kToolsName = "weft-tools";
 /// same folder. Throws Error(usage) if /proc is not mounted.
 std::filesystem::path own_program();
 
+/// The text in quotes, as one word of a shell.
+std::string quoted(const std::string& text);
+
 /// Starts the program `arguments[0]` with empty standard input. Searches the program in PATH as a
 /// shell does. Standard output and standard error of the program go to the file `log` or, if `log`
 /// is empty, to those of this process. The kernel kills the program when the calling thread ends.

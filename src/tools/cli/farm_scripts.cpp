@@ -15,19 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Quotes a text as one word of the shell.
-std::string quoted(const std::string& text) {
-  std::string word = "'";
-  for (const char c : text) {
-    if (c == '\'')
-      word += "'\\''";
-    else
-      word += c;
-  }
-  return word + "'";
-}
-
-std::string quoted(const std::vector<std::string>& words) {
+std::string quoted_words(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += " " + quoted(word);
   return text;
@@ -94,7 +82,8 @@ std::string task_script(const FarmOptions& options, const FarmPlan& plan) {
       kVersion, quoted(program), quoted(fs::absolute(sweep.output).lexically_normal().string()), quoted(unpacked),
       options.retries, plan.part);
   const auto define = [&](const char* name, const std::vector<std::string>& words) {
-    fmt::format_to(std::back_inserter(text), "{}() {{ unpack && exec \"$weft\"{} \"$@\"; }}\n", name, quoted(words));
+    fmt::format_to(std::back_inserter(text), "{}() {{ unpack && exec \"$weft\"{} \"$@\"; }}\n", name,
+                   quoted_words(words));
   };
   const auto with = [](std::vector<std::string> words, const std::vector<std::string>& more) {
     words.insert(words.end(), more.begin(), more.end());
@@ -123,7 +112,7 @@ std::string task_script(const FarmOptions& options, const FarmPlan& plan) {
     fmt::format_to(std::back_inserter(text),
                    "  {}) name={} scene={} begin={} end={} step={} simulated={}\n     set --{} ;;\n", i,
                    quoted("./" + job.run.name), quoted(job.scene), job.drawn.begin, job.drawn.end, job.drawn.step,
-                   job.simulated_count(), quoted(words));
+                   job.simulated_count(), quoted_words(words));
   }
   text += "esac\n\n";
   return text.append(embedded("task.sh"));
@@ -134,7 +123,7 @@ std::string submit_script(const FarmOptions& options, const FarmPlan& plan) {
       "#!/bin/sh\n# Hands the tasks of this folder to Slurm; their numbers go to farm/jobs.\ncd {}\n"
       "run_sbatch() {{ sbatch --cpus-per-task={} --mem={}M{} \"$@\"; }}\n{}",
       quoted(fs::absolute(options.sweep.output).lexically_normal().string()), options.threads, plan.needs.memory,
-      quoted(options.for_scheduler), embedded("submit.sh"));
+      quoted_words(options.for_scheduler), embedded("submit.sh"));
   const auto out = std::back_inserter(text);
   std::string after;
   if (!plan.archive.empty()) {

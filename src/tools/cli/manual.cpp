@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/version.hpp"
+#include "tools/cli/child_process.hpp"
 
 namespace weft::cli {
 namespace {
@@ -80,10 +81,6 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
     text.replace(at, from.size(), to);
   return text;
-}
-
-std::string quoted(const std::string& text) {
-  return "'" + replaced(text, "'", "'\\''") + "'";
 }
 
 std::string bash_completion(const CLI::App& app) {

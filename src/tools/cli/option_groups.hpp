@@ -29,7 +29,6 @@ inline constexpr std::array kCodecs{Choice<video::Codec>{"h264", video::Codec::h
 inline constexpr std::array kQualities{Choice<render::Quality>{"draft", render::Quality::draft},
                                        Choice<render::Quality>{"preview", render::Quality::preview},
                                        Choice<render::Quality>{"final", render::Quality::final}};
-inline constexpr const char* kSceneOrCache = "The scene, a TOML file, or the folder of a cache";
 
 /// Adds an option with one value, which `read` receives as text. `value`: placeholder of the value in the help.
 void add_value(CLI::App& command, const char* name, const char* value, const std::string& description,

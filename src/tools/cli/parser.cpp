@@ -124,7 +124,7 @@ void Parser::add_sheet() {
             [this](const std::string& text) { sheet.count = parse_integer("--count", text, 1, 400); });
   add_value(command, "--columns", "N", "Number of pictures side by side [4]",
             [this](const std::string& text) { sheet.columns = parse_integer("--columns", text, 1, 40); });
-  add_common(command, sheet.common, kSceneOrCache);
+  add_common(command, sheet.common, "The scene, a TOML file, or the folder of a cache");
   command.footer(
       "\nExample:\n  weft sheet scenes/falling_band.toml -o sheet.png --count 20 --columns 5\n"
       "\n--size is that of each small picture [400 wide].");
