@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -260,10 +261,9 @@ class Farm {
     plan_.needs.memory = options_.memory.value_or(0);
     if (options_.minutes && options_.memory) return;
     double simulate = 0, picture = 0, peak = 0;
-    const bool only_reports = plan_.submitted.empty();
-    const std::size_t first = only_reports ? 0 : plan_.submitted.front();
-    const std::size_t last = only_reports ? 0 : plan_.submitted.back();
-    for (const std::size_t i : {first, last}) {
+    std::set<std::size_t> tried{0};
+    if (!plan_.submitted.empty()) tried = {plan_.submitted.front(), plan_.submitted.back()};
+    for (const std::size_t i : tried) {
       SceneOptions scene = options_.sweep.pictures;
       scene.scene = options_.sweep.scene;
       scene.overrides = plan_.jobs[i].overrides();
@@ -277,7 +277,6 @@ class Farm {
       simulate = std::max(simulate, estimate.simulate_total());
       picture = std::max(picture, estimate.draw);
       peak = std::max(peak, static_cast<double>(estimate.peak));
-      if (first == last) break;
     }
     const auto minutes = [](double seconds) { return kMinTaskMinutes + static_cast<int>(kTimeFactor * seconds / 60); };
     if (!options_.minutes) plan_.needs.simulate_minutes = minutes(simulate);
