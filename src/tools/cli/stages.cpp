@@ -109,14 +109,14 @@ std::unique_ptr<FramePainter> make_gl_painter(const render::Settings& settings) 
 }
 
 Metadata describe_pictures(const cache::Manifest& scene, const render::Settings& settings, const std::string& gl) {
-  constexpr const char* kNames[] = {"draft", "preview", "final"};
+  const auto quality = std::ranges::find(kQualities, settings.quality, &Choice<render::Quality>::second);
   Metadata metadata{{"scene", scene.scene},
                     {"scene_hash", fmt::format("{:016x}", scene.scene_hash)},
                     {"weft_version", kVersion},
                     {"gl", gl},
                     {"fps", fmt::format("{}", scene.fps)},
                     {"scene_frames", fmt::format("{}", scene.frame_count)},
-                    {"quality", kNames[static_cast<int>(settings.quality)]}};
+                    {"quality", quality->first}};
   const auto look = std::ranges::find_if(kLooks, [&](const auto& each) { return each.second == settings.look; });
   if (look != kLooks.end()) metadata["look"] = look->first;
   if (settings.motion_blur) metadata["motion_blur"] = fmt::format("{}", *settings.motion_blur);
