@@ -83,10 +83,6 @@ void Store::note_former_looks(const cache::Manifest& found) {
         fmt::format("note: {}: only the look of the scene has changed; its simulation continues", folder().string()));
 }
 
-bool Store::holds(int frame) const {
-  return frame < current_frames_;
-}
-
 std::set<std::string> Store::outputs() const {
   std::set<std::string> outputs;
   std::istringstream in(read_start(folder() / cache::kOutputsFile, kMaxTextBytes));

@@ -63,7 +63,7 @@ class Store {
   /// The cache of the earlier run; call it only if resumes().
   const cache::Reader& earlier() const { return *reader_; }
   /// Whether the earlier run stored this frame and all before it with the current looks; call it only if resumes().
-  bool holds(int frame) const;
+  bool holds(int frame) const { return frame < current_frames_; }
   /// The stored state, from which the simulation continues; call it only if resumes().
   const cache::SolverState& start() const { return start_; }
 

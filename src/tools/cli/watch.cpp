@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr auto kFilePollPause = 100'000;  // between checks of the files and of the drawing process [microseconds]
 
-/// Modification times of files; a missing file has the default time.
+/// Modification times of files; a missing file has the earliest time.
 using Stamps = std::map<fs::path, fs::file_time_type>;
 
 Stamps stamps_of(const std::vector<fs::path>& files) {
@@ -34,7 +34,6 @@ Stamps stamps_of(const std::vector<fs::path>& files) {
   for (const fs::path& file : files) {
     std::error_code none;
     stamps[file] = fs::last_write_time(file, none);
-    if (none) stamps[file] = {};
   }
   return stamps;
 }
