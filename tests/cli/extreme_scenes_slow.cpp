@@ -43,20 +43,13 @@ std::vector<Trial> trials() {
   return trials;
 }
 
-class ExtremeScene : public ::testing::TestWithParam<Trial> {
+class ExtremeScene : public support::TestFolder, public ::testing::WithParamInterface<Trial> {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(::testing::TempDir()) / fmt::format("weft_extreme_{}_{}", GetParam().name, ::getpid());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   Outcome run() const {
     const Trial& trial = GetParam();
     support::write_bytes(folder_ / "s.toml", trial.text);
-    std::vector<std::string> arguments{"run",     "s.toml",     "--size", "64x36",    "--quality",
-                                       "draft",   "--progress", "none",   "--frames", fmt::format("0:{}", trial.frames),
-                                       "--stats", "stats.json"};
+    std::vector<std::string> arguments =
+        joined({"run", "s.toml", "--frames", fmt::format("0:{}", trial.frames), "--stats", "stats.json"}, kSmall);
     for (const std::string& change : trial.overrides) arguments.insert(arguments.end(), {"--set", change});
     return run_weft(arguments, folder_);
   }
@@ -67,8 +60,6 @@ class ExtremeScene : public ::testing::TestWithParam<Trial> {
       if (entry.is_regular_file()) names.insert(fs::relative(entry.path(), folder_).string());
     return names;
   }
-
-  fs::path folder_;
 };
 
 TEST_P(ExtremeScene, EndsWithTheExitCodeOfItsVerdictAndWholeFiles) {
