@@ -371,7 +371,7 @@ void TracedLight::trace_mirrors(const ReflectedLight& light, std::span<const Sur
   });
   smooth(mirrored_, open_scratch_, points, 1);
   if (!mirrored_texture_) mirrored_texture_ = make_texture(*gl_, GL_RGBA32F, width_, height_, GL_NEAREST);
-  upload(mirrored_, points, *mirrored_texture_, 2, Eigen::Vector4f::Zero());
+  upload(mirrored_, points, mirrored_texture_, 2, Eigen::Vector4f::Zero());
 }
 
 /// Interpolates four planes at all pixels and uploads them as a texture. Marks the tiles in which a

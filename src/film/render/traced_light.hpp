@@ -60,7 +60,7 @@ class TracedLight {
   std::vector<Eigen::Vector3f> directions_;            // directions of the rays to the surroundings
   std::array<Plane, 5> scratch_;                       // scratch planes, as large as those of lit_
   Texture lit_texture_, open_texture_;
-  std::optional<Texture> mirrored_texture_;
+  Texture mirrored_texture_;  // made once a surface mirrors
   std::vector<Eigen::Vector4f> normals_, values_, texels_;
   std::vector<char> shaded_;  // per tile of the picture: 1 if it contains shaded floor
 };

@@ -15,7 +15,9 @@ class GlObject {
   GlObject() = default;
   template <class... Args>
   explicit GlObject(const Gl& gl, Args... args) : gl_(&gl), name_(Kind::create(gl, args...)) {}
-  ~GlObject() { reset(); }
+  ~GlObject() {
+    if (name_) Kind::destroy(*gl_, name_);
+  }
   GlObject(GlObject&& other) noexcept : gl_(std::exchange(other.gl_, nullptr)), name_(std::exchange(other.name_, 0)) {}
   GlObject& operator=(GlObject&& other) noexcept {
     std::swap(gl_, other.gl_);
@@ -27,55 +29,30 @@ class GlObject {
   explicit operator bool() const { return name_ != 0; }
 
  private:
-  void reset() {
-    if (name_) Kind::destroy(*gl_, name_);
-  }
-
   const Gl* gl_ = nullptr;
   GLuint name_ = 0;
 };
 
-struct BufferKind {
-  static GLuint create(const Gl& gl) {
+/// Makes and deletes objects that OpenGL makes in numbers: `kCreate` and `kDelete` are the functions for n objects.
+template <auto kCreate, auto kDelete>
+struct NumberedKind {
+  template <class... Args>
+  static GLuint create(const Gl& gl, Args... args) {
     GLuint name = 0;
-    gl.CreateBuffers(1, &name);
+    (gl.*kCreate)(args..., 1, &name);
     return name;
   }
-  static void destroy(const Gl& gl, GLuint name) { gl.DeleteBuffers(1, &name); }
-};
-struct VertexArrayKind {
-  static GLuint create(const Gl& gl) {
-    GLuint name = 0;
-    gl.CreateVertexArrays(1, &name);
-    return name;
-  }
-  static void destroy(const Gl& gl, GLuint name) { gl.DeleteVertexArrays(1, &name); }
-};
-struct TextureKind {
-  static GLuint create(const Gl& gl, GLenum target) {
-    GLuint name = 0;
-    gl.CreateTextures(target, 1, &name);
-    return name;
-  }
-  static void destroy(const Gl& gl, GLuint name) { gl.DeleteTextures(1, &name); }
-};
-struct FramebufferKind {
-  static GLuint create(const Gl& gl) {
-    GLuint name = 0;
-    gl.CreateFramebuffers(1, &name);
-    return name;
-  }
-  static void destroy(const Gl& gl, GLuint name) { gl.DeleteFramebuffers(1, &name); }
+  static void destroy(const Gl& gl, GLuint name) { (gl.*kDelete)(1, &name); }
 };
 struct ProgramKind {
   static GLuint create(const Gl& gl) { return gl.CreateProgram(); }
   static void destroy(const Gl& gl, GLuint name) { gl.DeleteProgram(name); }
 };
 
-using Buffer = GlObject<BufferKind>;
-using VertexArray = GlObject<VertexArrayKind>;
-using Texture = GlObject<TextureKind>;
-using Framebuffer = GlObject<FramebufferKind>;
+using Buffer = GlObject<NumberedKind<&Gl::CreateBuffers, &Gl::DeleteBuffers>>;
+using VertexArray = GlObject<NumberedKind<&Gl::CreateVertexArrays, &Gl::DeleteVertexArrays>>;
+using Texture = GlObject<NumberedKind<&Gl::CreateTextures, &Gl::DeleteTextures>>;  // takes the target
+using Framebuffer = GlObject<NumberedKind<&Gl::CreateFramebuffers, &Gl::DeleteFramebuffers>>;
 using ProgramName = GlObject<ProgramKind>;
 
 /// Makes a texture with one mip level, sampled with `filter` (GL_NEAREST or GL_LINEAR) and clamped to its edge.
