@@ -40,10 +40,7 @@ Mirror::Mirror(const Gl& gl, const QualitySettings& quality, int width, int heig
       picture_(gl, GLenum{GL_TEXTURE_2D}) {
   const int levels = std::bit_width(static_cast<unsigned>(std::max(width_, height_)));
   gl.TextureStorage2D(picture_.name(), levels, GL_RGBA16, width_, height_);
-  gl.TextureParameteri(picture_.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-  gl.TextureParameteri(picture_.name(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  gl.TextureParameteri(picture_.name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  gl.TextureParameteri(picture_.name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  set_sampling(gl, picture_, GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR, GL_CLAMP_TO_EDGE, GL_CLAMP_TO_EDGE);
 }
 
 void Mirror::draw(const View& view, const FrameUniform& block, const Subjects& subjects, const LightSet& lights) {

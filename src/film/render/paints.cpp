@@ -74,10 +74,7 @@ const PaintTexture& Paints::of(const frame::Paint& paint) {
     gl_->TextureSubImage2D(name, static_cast<GLint>(i), 0, 0, levels[i].width, levels[i].height, GL_RGBA,
                            GL_UNSIGNED_BYTE, bytes.data());
   }
-  gl_->TextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-  gl_->TextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  gl_->TextureParameteri(name, GL_TEXTURE_WRAP_S, gl_wrap(paint.wrap_u));
-  gl_->TextureParameteri(name, GL_TEXTURE_WRAP_T, gl_wrap(paint.wrap_v));
+  set_sampling(*gl_, made.texture, GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR, gl_wrap(paint.wrap_u), gl_wrap(paint.wrap_v));
   check_errors(*gl_, "uploading a picture");
   gl_->TextureParameterf(name, kMaxAnisotropy, kAnisotropy);
   gl_->GetError();  // clears the error if OpenGL has no anisotropic filtering

@@ -41,14 +41,6 @@ float clip_of(int pixel, int size) {
   return 2 * static_cast<float>(pixel) / static_cast<float>(size) - 1;
 }
 
-/// Describes attribute 0 of a vertex array: two coordinates in clip space.
-void describe_corners(const Gl& gl, const VertexArray& array, const Buffer& corners) {
-  gl.VertexArrayVertexBuffer(array.name(), 0, corners.name(), 0, sizeof(Eigen::Vector2f));
-  gl.EnableVertexArrayAttrib(array.name(), 0);
-  gl.VertexArrayAttribFormat(array.name(), 0, 2, GL_FLOAT, GL_FALSE, 0);
-  gl.VertexArrayAttribBinding(array.name(), 0, 0);
-}
-
 /// The grid on which slowly varying colours are interpolated: cells of two triangles each. It is too coarse for the
 /// floor if fades_steeply() is true.
 struct Grid {
@@ -120,8 +112,8 @@ Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int he
       area_vertices_(gl),
       grid_vertices_(gl),
       grid_triangles_(gl) {
-  describe_corners(gl, area_array_, area_vertices_);
-  describe_corners(gl, grid_array_, grid_vertices_);
+  add_attribute(gl, area_array_, 0, area_vertices_, 2);  // two coordinates in clip space
+  add_attribute(gl, grid_array_, 0, grid_vertices_, 2);
   const Grid grid(width, height);
   upload<Eigen::Vector2f>(gl, grid_vertices_, grid.corners);
   upload<GLuint>(gl, grid_triangles_, grid.triangles);

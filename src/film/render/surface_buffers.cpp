@@ -66,20 +66,13 @@ SurfaceBuffers::SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surfac
   if (detail_.closures) slits_ = find_slits(*surface_);
   describe(gl, array_, vertices_);
   gl.VertexArrayElementBuffer(array_.name(), triangles_.name());
-  // Adds an attribute of `size` floats with its own buffer.
-  const auto add_attribute = [&](GLuint place, const Buffer& buffer, GLint size) {
-    gl.VertexArrayVertexBuffer(array_.name(), place, buffer.name(), 0, static_cast<GLsizei>(size * sizeof(float)));
-    gl.EnableVertexArrayAttrib(array_.name(), place);
-    gl.VertexArrayAttribFormat(array_.name(), place, size, GL_FLOAT, GL_FALSE, 0);
-    gl.VertexArrayAttribBinding(array_.name(), place, place);
-  };
   if (detail_.trims) {
-    add_attribute(5, trim_distances_, Trim::kKinds);
-    add_attribute(6, trim_places_, Trim::kKinds);
+    add_attribute(gl, array_, 5, trim_distances_, Trim::kKinds);
+    add_attribute(gl, array_, 6, trim_places_, Trim::kKinds);
   }
   if (!frame::is_painted(*surface_)) return;
   painted_.emplace();
-  add_attribute(4, places_, 2);
+  add_attribute(gl, array_, 4, places_, 2);
 }
 
 void SurfaceBuffers::update(const frame::SurfaceState& state, double rim) {

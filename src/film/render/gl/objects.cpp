@@ -7,13 +7,6 @@
 namespace weft::render {
 namespace {
 
-void set_sampling(const Gl& gl, const Texture& texture, GLenum filter) {
-  gl.TextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, static_cast<GLint>(filter));
-  gl.TextureParameteri(texture.name(), GL_TEXTURE_MAG_FILTER, static_cast<GLint>(filter));
-  gl.TextureParameteri(texture.name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  gl.TextureParameteri(texture.name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-}
-
 const char* error_name(GLenum error) {
   switch (error) {
     case GL_INVALID_ENUM:
@@ -34,8 +27,23 @@ const char* error_name(GLenum error) {
 Texture make_texture(const Gl& gl, GLenum format, int width, int height, GLenum filter) {
   Texture texture(gl, GLenum{GL_TEXTURE_2D});
   gl.TextureStorage2D(texture.name(), 1, format, width, height);
-  set_sampling(gl, texture, filter);
+  set_sampling(gl, texture, static_cast<GLint>(filter), static_cast<GLint>(filter), GL_CLAMP_TO_EDGE, GL_CLAMP_TO_EDGE);
   return texture;
+}
+
+void set_sampling(const Gl& gl, const Texture& texture, GLint min_filter, GLint mag_filter, GLint wrap_s,
+                  GLint wrap_t) {
+  gl.TextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, min_filter);
+  gl.TextureParameteri(texture.name(), GL_TEXTURE_MAG_FILTER, mag_filter);
+  gl.TextureParameteri(texture.name(), GL_TEXTURE_WRAP_S, wrap_s);
+  gl.TextureParameteri(texture.name(), GL_TEXTURE_WRAP_T, wrap_t);
+}
+
+void add_attribute(const Gl& gl, const VertexArray& array, GLuint place, const Buffer& buffer, GLint size) {
+  gl.VertexArrayVertexBuffer(array.name(), place, buffer.name(), 0, static_cast<GLsizei>(size * sizeof(float)));
+  gl.EnableVertexArrayAttrib(array.name(), place);
+  gl.VertexArrayAttribFormat(array.name(), place, size, GL_FLOAT, GL_FALSE, 0);
+  gl.VertexArrayAttribBinding(array.name(), place, place);
 }
 
 void check_framebuffer(const Gl& gl, const Framebuffer& framebuffer, const char* what) {

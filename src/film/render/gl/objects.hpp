@@ -58,6 +58,12 @@ using ProgramName = GlObject<ProgramKind>;
 /// Makes a texture with one mip level, sampled with `filter` (GL_NEAREST or GL_LINEAR) and clamped to its edge.
 Texture make_texture(const Gl& gl, GLenum format, int width, int height, GLenum filter);
 
+/// Sets how a texture is sampled (GL_TEXTURE_MIN_FILTER and so on).
+void set_sampling(const Gl& gl, const Texture& texture, GLint min_filter, GLint mag_filter, GLint wrap_s, GLint wrap_t);
+
+/// Describes an attribute of a vertex array: `size` floats per vertex, which have their own buffer.
+void add_attribute(const Gl& gl, const VertexArray& array, GLuint place, const Buffer& buffer, GLint size);
+
 /// Throws Error(internal) if the framebuffer is incomplete. `what`: its name in the message.
 void check_framebuffer(const Gl& gl, const Framebuffer& framebuffer, const char* what);
 
