@@ -116,7 +116,6 @@ struct Renderer::Impl {
     return quality.mirrors && floor_roughness(plan.lighting.style, plan.floor) < kSubjectMirrorRoughness;
   }
   ReflectedLight reflected_light(const Plan& plan, double heat);
-  void shade(const Plan& plan, const PixelArea& subjects, double heat);
   void blend_translucent_cloth(const Plan& plan, std::span<const char> sheer, const ReflectedLight& light,
                                std::span<const DrawnMesh> opaque, const PixelArea& area);
   Plan plan_of(const frame::FrameSnapshot& snapshot, const frame::Camera& camera, const Vec3& upright) const;
@@ -180,9 +179,7 @@ void Renderer::Impl::update_surfaces(const frame::FrameSnapshot& snapshot, const
 }
 
 frame::Camera Renderer::Impl::choose_camera(const frame::FrameSnapshot& snapshot) {
-  if (const frame::Camera* camera = find_camera(snapshot, settings.camera);
-      camera && camera->kind == frame::Camera::Kind::placed)
-    return *camera;
+  if (!CameraPath::is_computed(snapshot, settings.camera)) return *find_camera(snapshot, settings.camera);
   if (!path) {
     path.emplace(settings.camera, settings.aspect());
     path->add_frame(snapshot);
@@ -193,7 +190,7 @@ frame::Camera Renderer::Impl::choose_camera(const frame::FrameSnapshot& snapshot
 
 void Renderer::Impl::update_floor(const Plan& plan) {
   if (!plan.floor) return;
-  passes->shading.set_floor(plan.floor, plan.lighting.style.floor_tint);
+  passes->shading.set_floor(*plan.floor, plan.lighting.style.floor_tint);
   const Vec3 center = plan.subjects.center();
   const Vec3 under = center - plan.floor->normal.dot(center - plan.floor->point) * plan.floor->normal;
   const double radius = 0.5 * plan.surroundings.diagonal().norm();
@@ -248,10 +245,6 @@ ReflectedLight Renderer::Impl::reflected_light(const Plan& plan, double heat) {
                         plan.floor, floor_color, plan.surroundings.diagonal().norm());
 }
 
-void Renderer::Impl::shade(const Plan& plan, const PixelArea& subjects, double heat) {
-  passes->shading.draw(materials(plan), heat, features(plan), subjects, passes->traced.shaded_floor());
-}
-
 /// Draws one picture without blur: draws the geometry buffer, traces light, computes colours, antialiases outlines.
 void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan& plan) {
   update_surfaces(snapshot, plan.view);
@@ -297,7 +290,7 @@ void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan
   std::vector<Vec3> drawn;
   for (const DrawnMesh& mesh : meshes) drawn.insert(drawn.end(), mesh.positions.begin(), mesh.positions.end());
   const PixelArea area = visible_area(plan.view, drawn, settings.width, settings.height);
-  shade(plan, area, heat);
+  passes->shading.draw(materials(plan), heat, features(plan), area, passes->traced.shaded_floor());
   passes->shading.read(rgba);
   if (!outlines && !plan.lighting.style.edges) return;
   if (!sheer.empty()) blend_translucent_cloth(plan, sheer, light, opaque, area);

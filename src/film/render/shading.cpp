@@ -195,23 +195,32 @@ void Shading::upload_materials(std::span<const Material> materials, double heat_
   if (rows > 0) gl_->TextureSubImage2D(materials_.name(), 0, 0, 0, kColumns, rows, GL_RGBA, GL_FLOAT, texels.data());
 }
 
-void Shading::set_floor(const std::optional<Floor>& floor, double tint) {
-  if (!floor || !floor->look.paint.texture) return;
+void Shading::set_floor(const Floor& floor, double tint) {
+  if (!floor.look.paint.texture) return;
   if (!floor_pictures_) floor_pictures_.emplace(*gl_);
-  floor_picture_ = floor_pictures_->of(floor->look.paint).texture.name();
+  floor_picture_ = floor_pictures_->of(floor.look.paint).texture.name();
   floor_tint_ = static_cast<float>(tint);
-  floor_picture_from_world_ = floor->picture_from_world.cast<float>();
+  floor_picture_from_world_ = floor.picture_from_world.cast<float>();
 }
 
-void Shading::use_floor(const Program& program, const Features& features) const {
+/// Runs a program for all pixels that pass the stencil test. `on_grid`: it computes colours only at the corners of the
+/// grid.
+void Shading::run(const Program& program, const Features& features, bool on_grid) const {
   program.use();
-  if (!features.tiled) return;
-  constexpr GLuint kUnit = 16;  // as in floor.frag
-  gl_->BindTextureUnit(kUnit, floor_picture_);
-  const Eigen::Vector4f across = floor_picture_from_world_.row(0), up = floor_picture_from_world_.row(1);
-  gl_->Uniform4f(program.uniform("picture_across"), across.x(), across.y(), across.z(), across.w());
-  gl_->Uniform1f(program.uniform("tint"), floor_tint_);
-  gl_->Uniform4f(program.uniform("picture_up"), up.x(), up.y(), up.z(), up.w());
+  if (features.tiled) {
+    constexpr GLuint kUnit = 16;  // as in floor.frag
+    gl_->BindTextureUnit(kUnit, floor_picture_);
+    const Eigen::Vector4f across = floor_picture_from_world_.row(0), up = floor_picture_from_world_.row(1);
+    gl_->Uniform4f(program.uniform("picture_across"), across.x(), across.y(), across.z(), across.w());
+    gl_->Uniform1f(program.uniform("tint"), floor_tint_);
+    gl_->Uniform4f(program.uniform("picture_up"), up.x(), up.y(), up.z(), up.w());
+  }
+  gl_->BindVertexArray((on_grid ? grid_array_ : no_vertices_).name());
+  if (on_grid) {
+    gl_->DrawElements(GL_TRIANGLES, grid_indices_, GL_UNSIGNED_INT, nullptr);
+  } else {
+    gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+  }
 }
 
 void Shading::mark_shaded_floor(std::span<const PixelArea> areas) {
@@ -250,9 +259,7 @@ void Shading::draw_layer(Features features, const PixelArea& subjects) {
   gl_->StencilFunc(GL_EQUAL, static_cast<GLint>(PixelClass::cloth), 0xFF);
   gl_->Enable(GL_SCISSOR_TEST);
   gl_->Scissor(subjects.x, subjects.y, subjects.width, subjects.height);
-  chosen.cloth.use();
-  gl_->BindVertexArray(no_vertices_.name());
-  gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+  run(chosen.cloth, features, false);
   gl_->Disable(GL_SCISSOR_TEST);
   gl_->Disable(GL_STENCIL_TEST);
 }
@@ -263,14 +270,7 @@ void Shading::draw_open_floor(const Features& features) {
   gl_->StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
   // Selects both classes of floor, which have the same lower bits.
   gl_->StencilFunc(GL_EQUAL, static_cast<GLint>(PixelClass::floor), static_cast<GLuint>(PixelClass::floor));
-  use_floor(chosen.open_floor, features);
-  if (chosen.floor_on_grid) {
-    gl_->BindVertexArray(grid_array_.name());
-    gl_->DrawElements(GL_TRIANGLES, grid_indices_, GL_UNSIGNED_INT, nullptr);
-  } else {
-    gl_->BindVertexArray(no_vertices_.name());
-    gl_->DrawArrays(GL_TRIANGLES, 0, 3);
-  }
+  run(chosen.open_floor, features, chosen.floor_on_grid);
   gl_->Disable(GL_STENCIL_TEST);
 }
 
@@ -284,13 +284,7 @@ void Shading::draw(std::span<const Material> materials, double heat_scale, const
   // With the stencil test, the rasteriser skips blocks without pixels of the class.
   const auto shade = [&](PixelClass pixel_class, const Program& program, bool on_grid = false) {
     gl_->StencilFunc(GL_EQUAL, static_cast<GLint>(pixel_class), 0xFF);
-    use_floor(program, features);
-    gl_->BindVertexArray((on_grid ? grid_array_ : no_vertices_).name());
-    if (on_grid) {
-      gl_->DrawElements(GL_TRIANGLES, grid_indices_, GL_UNSIGNED_INT, nullptr);
-    } else {
-      gl_->DrawArrays(GL_TRIANGLES, 0, 3);
-    }
+    run(program, features, on_grid);
   };
   gl_->Enable(GL_SCISSOR_TEST);
   gl_->Scissor(subjects.x, subjects.y, subjects.width, subjects.height);

@@ -49,7 +49,7 @@ class Shading {
   };
   /// Sets the floor whose picture is drawn, and `tint`, a factor on the colour of that picture.
   /// Does nothing if the floor has no picture. Call before draw().
-  void set_floor(const std::optional<Floor>& floor, double tint);
+  void set_floor(const Floor& floor, double tint);
   /// Computes the colours of the picture. `materials`: in the order of the surfaces. `heat_scale`: result of
   /// heat_scale(). `subjects`: area that contains all surfaces. Outside `shaded_floor`, the floor is drawn without
   /// shadow, occlusion and reflected light. The frame and light blocks, the textures of TracedLight and those of the
@@ -68,7 +68,7 @@ class Shading {
 
  private:
   void upload_materials(std::span<const Material> materials, double heat_scale);
-  void use_floor(const Program& program, const Features& features) const;
+  void run(const Program& program, const Features& features, bool on_grid) const;
   void mark_shaded_floor(std::span<const PixelArea> areas);
 
   struct Programs {
