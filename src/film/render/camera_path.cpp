@@ -43,19 +43,6 @@ std::vector<bool> subjects_of(const frame::FrameSnapshot& snapshot, const frame:
   return chosen(is_subject);
 }
 
-/// Weights of a Gaussian, from its centre to one side. `width`: standard deviation [frames]. The sum of the centre and
-/// of both sides is 1.
-std::vector<double> gaussian(double width) {
-  std::vector<double> weights{1};
-  double sum = 1;
-  for (int i = 1; i <= kKernelSigmas * width; ++i) {
-    weights.push_back(std::exp(-0.5 * i * i / (width * width)));
-    sum += 2 * weights.back();
-  }
-  for (double& weight : weights) weight /= sum;
-  return weights;
-}
-
 }  // namespace
 
 bool CameraPath::is_computed(const frame::FrameSnapshot& snapshot, const std::string& camera) {
@@ -155,17 +142,28 @@ void CameraPath::compute_orbit() {
   }
 }
 
-/// Converts a duration [s] to frames; 0 if the run has only one frame.
-double CameraPath::frames_in(double seconds) const {
+/// Weights of the smoothing kernel, a Gaussian, from its centre to one side. The sum of the centre and of both sides
+/// is 1.
+std::vector<double> CameraPath::kernel() const {
   const double length = frames_.back().time - frames_.front().time;
-  return length > 0 ? seconds * static_cast<double>(frames_.size() - 1) / length : 0;
+  const double smoothing = frames_.front().camera.smoothing;
+  // Standard deviation [frames]; nearly 0 if the run has only one frame.
+  const double width = std::max(1e-3, length > 0 ? smoothing * static_cast<double>(frames_.size() - 1) / length : 0);
+  std::vector<double> weights{1};
+  double sum = 1;
+  for (int i = 1; i <= kKernelSigmas * width; ++i) {
+    weights.push_back(std::exp(-0.5 * i * i / (width * width)));
+    sum += 2 * weights.back();
+  }
+  for (double& weight : weights) weight /= sum;
+  return weights;
 }
 
 /// Gaussian means of the subjects' centres over neighbouring frames. Beyond both ends of the run,
 /// point reflection continues the trajectory of the centre. Thus, if the centre moves at a constant
 /// velocity, the means do too, from the first frame on.
 std::vector<Vec3> CameraPath::smooth_centers() const {
-  const std::vector<double> weights = gaussian(std::max(1e-3, frames_in(frames_.front().camera.smoothing)));
+  const std::vector<double> weights = kernel();
   const auto last = static_cast<std::ptrdiff_t>(frames_.size()) - 1;
   const auto center = [&](std::ptrdiff_t i) -> Vec3 {
     const std::ptrdiff_t end = i < 0 ? 0 : last, inside = std::clamp<std::ptrdiff_t>(2 * end - i, 0, last);
@@ -194,7 +192,7 @@ void CameraPath::compute_following_camera() {
     needed_distances.push_back(eye_distance(frames_[k].fit.distance(centers[k])));
   std::vector<double> distances(needed_distances.size(), *std::ranges::max_element(needed_distances));
   if (frames_.front().camera.kind == Kind::close) {
-    const std::vector<double> weights = gaussian(std::max(1e-3, frames_in(frames_.front().camera.smoothing)));
+    const std::vector<double> weights = kernel();
     const auto reach = static_cast<std::ptrdiff_t>(weights.size()) - 1;
     const auto largest_around = [&](std::ptrdiff_t k) {
       k = std::clamp<std::ptrdiff_t>(k, 0, count - 1);

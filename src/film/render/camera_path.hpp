@@ -45,7 +45,7 @@ class CameraPath {
   void compute_orbit();
   void compute_following_camera();
   void compute_tracking_camera();
-  double frames_in(double seconds) const;
+  std::vector<double> kernel() const;
   std::vector<Vec3> smooth_centers() const;
 
   std::string name_;

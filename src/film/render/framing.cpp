@@ -10,14 +10,6 @@ namespace {
 
 constexpr double kFieldOfView = 30;  // vertical [degrees]; that of a portrait lens, which distorts little
 
-template <class Visit>
-void for_each_subject_vertex(const frame::FrameSnapshot& snapshot, const Visit& visit) {
-  for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
-    if (!is_subject(*snapshot.surfaces[i])) continue;
-    for (const Vec3& position : snapshot.states[i].positions) visit(position);
-  }
-}
-
 }  // namespace
 
 bool is_subject(const frame::Surface& surface) {
@@ -26,7 +18,10 @@ bool is_subject(const frame::Surface& surface) {
 
 Box3 subject_bounds(const frame::FrameSnapshot& snapshot) {
   Box3 bounds;
-  for_each_subject_vertex(snapshot, [&](const Vec3& position) { bounds.extend(position); });
+  for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
+    if (!is_subject(*snapshot.surfaces[i])) continue;
+    for (const Vec3& position : snapshot.states[i].positions) bounds.extend(position);
+  }
   return bounds.isEmpty() ? Box3(Vec3::Constant(-0.5), Vec3::Constant(0.5)) : bounds;
 }
 
