@@ -263,12 +263,6 @@ void SurfaceBuffers::draw(const PaintedRange& range) const {
   gl_->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * range.count), GL_UNSIGNED_INT, first);
 }
 
-void SurfaceBuffers::draw() const {
-  if (triangles().empty()) return;
-  gl_->BindVertexArray(array_.name());
-  gl_->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * triangles().size()), GL_UNSIGNED_INT, nullptr);
-}
-
 FloorBuffers::FloorBuffers(const Gl& gl) : gl_(&gl), array_(gl), vertices_(gl) {
   SurfaceBuffers::describe(gl, array_, vertices_);
 }

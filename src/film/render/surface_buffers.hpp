@@ -37,7 +37,7 @@ class SurfaceBuffers {
   /// position. `rim`: width of the strips along borders [m], 0 for none; ignored without
   /// Detail::rims.
   void update(const frame::SurfaceState& state, double rim = 0);
-  void draw() const;
+  void draw() const { draw({0, triangles().size()}); }
   void draw(const PaintedRange& range) const;
   /// The painted mesh; null if nothing is painted.
   const PaintedMesh* painted() const { return painted_ ? &*painted_ : nullptr; }

@@ -52,10 +52,6 @@ class EglContext : public Context {
   void check(bool good, const char* what) const {
     if (!good) throw Error(ExitCode::internal, "{}: {} failed with EGL error {:#x}", kEgl, what, get_error_());
   }
-  bool check(EglHandle handle, const char* what) const {
-    check(handle != nullptr, what);
-    return true;
-  }
 
   SharedLibrary library_{kEgl};
   using GetPlatformDisplay = EglHandle (*)(EglEnum, void*, const std::intptr_t*);
