@@ -135,7 +135,7 @@ Surroundings make_surroundings(const Style& style, const frame::Stage& stage, co
   const Vec3 flat = evaluate_irradiance(irradiance_of(around), up);
   const Vec3 scale = style.sky_intensity * style.sky_color.cwiseQuotient(flat.cwiseMax(1e-6));
   const bool tinted = stage.look == Look::daylight;
-  const Vec3 even = Vec3::Constant(style.sky_intensity / flat.dot(Vec3(0.2126, 0.7152, 0.0722)));
+  const Vec3 even = Vec3::Constant(style.sky_intensity / flat.dot(kLuminance));
   const Vec3 gain = tinted && !stage.sky_color ? even : scale;
   for (Vec3* light : {&around.sky, &around.horizon}) *light = light->cwiseProduct(gain);
   for (Surroundings::Box& each : around.boxes) each.light = each.light.cwiseProduct(gain);

@@ -10,6 +10,8 @@
 
 namespace weft::render {
 
+inline const Vec3 kLuminance(0.2126, 0.7152, 0.0722);  ///< luminance weights of Rec. 709
+
 /// Settings of a look besides its lights. Colours are linear.
 struct Style {
   Vec3 sky_color = Vec3::Ones();  ///< colour of the environment light on a horizontal surface

@@ -10,8 +10,6 @@
 namespace weft::render {
 namespace {
 
-// Rec. 709 luminance weights.
-const Vec3 kLuminance(0.2126, 0.7152, 0.0722);
 // Ratio of the light from below to the light of open floor. It is below 1, because far floor fades into a darker
 // backdrop.
 constexpr double kGroundLight = 0.8;
