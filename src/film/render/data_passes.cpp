@@ -46,11 +46,8 @@ struct PixelValues {
 
 void DataPasses::find_hits(std::span<const SurfaceBuffers> surfaces, const View& view) {
   hits_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), {});
-  // Position in the picture [pixels], and 1 / distance [1/m].
-  const auto place = [&](const Eigen::Vector4d& clip) {
-    return Vec3((0.5 + 0.5 * clip.x() / clip.w()) * width_, (0.5 + 0.5 * clip.y() / clip.w()) * height_, 1 / clip.w())
-        .cast<float>()
-        .eval();
+  const auto place = [&](const Eigen::Vector4d& clip) -> Eigen::Vector3f {
+    return place_in_picture(clip, width_, height_).cast<float>();
   };
   std::vector<Eigen::Vector4d> clip;
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
@@ -74,7 +71,7 @@ void DataPasses::find_hits(std::span<const SurfaceBuffers> surfaces, const View&
 std::optional<Vec2> DataPasses::to_picture(const View& view, const Vec3& position) const {
   const Eigen::Vector4d clip = view.clip_from_world * position.homogeneous();
   if (clip.w() < view.near) return std::nullopt;
-  return Vec2((0.5 + 0.5 * clip.x() / clip.w()) * width_, (0.5 + 0.5 * clip.y() / clip.w()) * height_);
+  return Vec2(place_in_picture(clip, width_, height_).head<2>());
 }
 
 void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optional<Floor>& floor, const View& view,

@@ -24,22 +24,18 @@ std::vector<std::pair<Index, Index>> edges_of(const frame::Surface& surface) {
   return edges;
 }
 
-/// Position of a vertex in the picture [pixels], and 1 / distance along the view axis [1/m].
-struct Place {
-  double x, y, nearness;
-};
-
 /// Draws antialiased lines into a picture (Wu, "An Efficient Antialiasing Technique", 1991).
 class Canvas {
  public:
   Canvas(int width, int height, std::span<const Seen> seen, std::span<std::uint64_t> picture)
       : width_(width), height_(height), seen_(seen), picture_(picture) {}
 
-  /// Darkens the pixels along the line from a to b that show the surface with the number `surface` (see Seen).
-  void line(Place a, Place b, float surface) {
-    const bool steep = std::abs(b.y - a.y) > std::abs(b.x - a.x);
-    const auto along = [&](const Place& p) { return steep ? p.y : p.x; };
-    const auto across = [&](const Place& p) { return steep ? p.x : p.y; };
+  /// Darkens the pixels along the line between two places (place_in_picture()) that show the surface with the number
+  /// `surface` (see Seen).
+  void line(Vec3 a, Vec3 b, float surface) {
+    const bool steep = std::abs(b.y() - a.y()) > std::abs(b.x() - a.x());
+    const auto along = [&](const Vec3& p) { return steep ? p.y() : p.x(); };
+    const auto across = [&](const Vec3& p) { return steep ? p.x() : p.y(); };
     if (along(a) > along(b)) std::swap(a, b);
     const double length = along(b) - along(a);
     if (!(length > 0)) return;
@@ -49,7 +45,7 @@ class Canvas {
     for (int step = from; step < to; ++step) {
       const double fraction = (step + 0.5 - along(a)) / length;
       const double cross_place = across(a) + fraction * (across(b) - across(a)) - 0.5;
-      const double nearness = a.nearness + fraction * (b.nearness - a.nearness);
+      const double nearness = a.z() + fraction * (b.z() - a.z());
       const double pixel = std::floor(cross_place);
       for (int side = 0; side < 2; ++side) {
         const int cross_pixel = static_cast<int>(pixel) + side;
@@ -86,15 +82,13 @@ void draw_edges(std::span<const SurfaceBuffers> surfaces, const View& view, int 
     std::vector<Eigen::Vector4d> clip;
     for (const Vec3& position : surfaces[i].state().positions)
       clip.push_back(view.clip_from_world * position.homogeneous());
-    const auto to_picture = [&](const Eigen::Vector4d& at) {
-      return Place{(0.5 + 0.5 * at.x() / at.w()) * width, (0.5 + 0.5 * at.y() / at.w()) * height, 1 / at.w()};
-    };
     for (const auto& [a, b] : edges_of(surfaces[i].surface())) {
       Eigen::Vector4d from = clip[a], to = clip[b];
       if (from.w() > to.w()) std::swap(from, to);
       if (to.w() <= view.near) continue;
       if (from.w() < view.near) from += (view.near - from.w()) / (to.w() - from.w()) * (to - from);
-      canvas.line(to_picture(from), to_picture(to), static_cast<float>(kFirstSurface + i));
+      canvas.line(place_in_picture(from, width, height), place_in_picture(to, width, height),
+                  static_cast<float>(kFirstSurface + i));
     }
   }
 }

@@ -22,8 +22,7 @@ constexpr float kMinMotion = 1.2f;
 Eigen::Vector3f to_pixels(const View& view, const Vec3& position, int width, int height) {
   const Eigen::Vector4d clip = view.clip_from_world * position.homogeneous();
   if (clip.w() < view.near) return Eigen::Vector3f::Zero();
-  return Vec3((0.5 + 0.5 * clip.x() / clip.w()) * width, (0.5 + 0.5 * clip.y() / clip.w()) * height, 1 / clip.w())
-      .cast<float>();
+  return place_in_picture(clip, width, height).cast<float>();
 }
 
 /// Motion of the point of the floor that the picture of `view` shows at (x, y), between two other views; all is 0 if no

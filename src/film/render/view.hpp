@@ -45,6 +45,12 @@ inline Vec3 pixel_ray(const View& view, double x, double y, int width, int heigh
          (2 * y / height - 1) * view.tan_half_height * view.axes.up;
 }
 
+/// Place in a picture of width x height pixels of the point with these clip coordinates: x and y from the lower left
+/// corner [pixels], z: 1 / distance along the view axis [1/m].
+inline Vec3 place_in_picture(const Eigen::Vector4d& clip, int width, int height) {
+  return {(0.5 + 0.5 * clip.x() / clip.w()) * width, (0.5 + 0.5 * clip.y() / clip.w()) * height, 1 / clip.w()};
+}
+
 /// A rectangle of pixels; x and y are counted from the lower left corner of the picture.
 struct PixelArea {
   int x = 0, y = 0, width = 0, height = 0;
