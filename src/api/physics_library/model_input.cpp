@@ -224,14 +224,6 @@ void add_pin(const Pin& given, std::set<std::pair<std::string, int>>& held, mode
   if (std::isfinite(given.release)) pin.release = given.release;
 }
 
-void check_driven(const Model& given, const std::vector<std::string>& driven) {
-  std::vector<std::string> names;
-  for (const Body& body : given.bodies) names.push_back(body.name);
-  for (const std::string& name : driven)
-    if (std::ranges::find(names, name) == names.end())
-      refuse("driven", "bodies ({}), got {}", fmt::join(names, ", "), name);
-}
-
 }  // namespace
 
 motion::Pose pose_of(const Pose& given, const std::string& object) {
@@ -275,7 +267,6 @@ model::Model physics_of(const Model& given, const std::vector<std::string>& driv
   model.physics.air_density = given.air_density;
   if (model.physics.gravity != Vec3::Zero()) model.up = -model.physics.gravity.normalized();
   model.contact.self = given.self_contact;
-  check_driven(given, driven);
   std::set<std::string> names;
   const auto check_name = [&](const std::string& object) {
     if (object.empty()) refuse(name, "objects with names, got one without");

@@ -18,8 +18,9 @@ motion::Pose pose_of(const Pose& given, const std::string& object);
 Vec3 gravity_of(const Vector& given, const std::string& object);
 Vec3 wind_of(const Vector& given, const std::string& object);
 
-/// Converts a model. `driven`: names of the bodies that the caller will move by simulation::Simulation::drive(). If a
-/// value, a name, a reference or a mesh is not valid, throws std::invalid_argument with the name of the object.
+/// Converts a model. `driven`: names of the bodies that the caller will move by simulation::Simulation::drive();
+/// Simulation::Impl checks that there are such bodies. If a value, a name, a reference or a mesh is not valid, throws
+/// std::invalid_argument with the name of the object.
 model::Model physics_of(const Model& given, const std::vector<std::string>& driven);
 
 }  // namespace weft::library
