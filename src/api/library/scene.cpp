@@ -5,6 +5,7 @@
 #include <weft/scene.hpp>
 
 #include "api/library/scene_data.hpp"
+#include "api/physics_library/data.hpp"
 #include "api/physics_library/material_members.hpp"
 #include "film/scene/fabrics.hpp"
 #include "film/scene/loader.hpp"
@@ -30,13 +31,6 @@ Scene checked(scene::LoadResult loaded, std::vector<std::vector<std::string>> ch
   }
   return Scene(std::make_shared<const Scene::Data>(
       Scene::Data{std::move(loaded.scene), std::move(loaded.text), std::move(loaded.file), std::move(changes)}));
-}
-
-template <class List>
-std::vector<std::string> names_of(const List& list) {
-  std::vector<std::string> names;
-  for (const auto& entry : list) names.push_back(entry.name);
-  return names;
 }
 
 }  // namespace
@@ -69,10 +63,10 @@ int Scene::frames() const {
   return data_->scene.frame_count();
 }
 std::vector<std::string> Scene::cloths() const {
-  return names_of(data_->scene.cloths);
+  return library::names_of(data_->scene.cloths);
 }
 std::vector<std::string> Scene::obstacles() const {
-  return names_of(data_->scene.obstacles);
+  return library::names_of(data_->scene.obstacles);
 }
 std::string Scene::text() const {
   return scene::effective_scene(data_->scene);

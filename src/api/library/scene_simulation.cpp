@@ -21,12 +21,9 @@ namespace {
 scene::Scene with_driven(scene::Scene scene, const SimulationOptions& options) {
   for (const std::string& name : options.driven) {
     const auto found = std::ranges::find(scene.obstacles, name, &scene::Obstacle::name);
-    if (found == scene.obstacles.end()) {
-      std::vector<std::string> names;
-      for (const scene::Obstacle& known : scene.obstacles) names.push_back(known.name);
-      throw std::invalid_argument(
-          fmt::format("driven: expected obstacles of the scene ({}), got {}", fmt::join(names, ", "), name));
-    }
+    if (found == scene.obstacles.end())
+      throw std::invalid_argument(fmt::format("driven: expected obstacles of the scene ({}), got {}",
+                                              fmt::join(library::names_of(scene.obstacles), ", "), name));
     if (scene::is_dynamic(*found) && found->release.value_or(0) == 0)
       throw std::invalid_argument(fmt::format(
           "driven: expected an obstacle without a mass, or with a `release` until which it is moved, got {}", name));

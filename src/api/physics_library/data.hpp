@@ -66,6 +66,14 @@ std::span<const To> view_as(const std::vector<From>& points) {
   return {reinterpret_cast<const To*>(points.data()), points.size()};
 }
 
+/// The names of a list of cloths, bodies or obstacles.
+template <class List>
+std::vector<std::string> names_of(const List& list) {
+  std::vector<std::string> names;
+  for (const auto& entry : list) names.push_back(entry.name);
+  return names;
+}
+
 /// Converts a report to one of the public interface.
 Report report_of(const simulation::FrameReport& report);
 

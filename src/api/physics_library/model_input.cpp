@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "api/physics_library/data.hpp"
 #include "api/physics_library/material_members.hpp"
 #include "physics/mesh/geometry.hpp"
 
@@ -194,9 +195,7 @@ template <class Objects>
 std::size_t number_of(const std::string& name, const Objects& objects, const char* kind) {
   const auto found = std::ranges::find(objects, name, [](const auto& object) { return object.name; });
   if (found != objects.end()) return static_cast<std::size_t>(found - objects.begin());
-  std::vector<std::string> names;
-  for (const auto& object : objects) names.push_back(object.name);
-  refuse("pin", "a {} ({}), got \"{}\"", kind, fmt::join(names, ", "), name);
+  refuse("pin", "a {} ({}), got \"{}\"", kind, fmt::join(names_of(objects), ", "), name);
 }
 
 // Adds a pin to its cloth, and its particles to `held`, which has the cloth and the index of each
