@@ -124,7 +124,7 @@ struct Encoder::Impl {
   std::filesystem::path file;
   Settings settings;
   AVRational rate;
-  std::optional<TemporaryFile> fragments;  // kept until publish() makes the finished file from them
+  std::optional<TemporaryFile> fragments;  // kept until finish() has made the whole file from them
   FrameConverter converter;
   FramePtr frame;
   PacketPtr packet;
@@ -136,7 +136,6 @@ struct Encoder::Impl {
 
   Impl(const std::filesystem::path& f, const Settings& s);
   void send(const AVFrame* next);
-  void publish();
 };
 
 Encoder::Impl::Impl(const std::filesystem::path& f, const Settings& s)
@@ -165,14 +164,6 @@ void Encoder::Impl::send(const AVFrame* next) {
     av_packet_unref(packet.get());
     ++packets;
   }
-}
-
-// Makes the finished file from the fragments.
-void Encoder::Impl::publish() {
-  TemporaryFile whole(file);
-  copy_to_fast_start({&fragments->path(), 1}, whole.path(), file, rate, settings.metadata);
-  verify_frames(whole.path(), file, rate, frames);
-  whole.commit();
 }
 
 Encoder::Encoder(const std::filesystem::path& file, const Settings& wanted) {
@@ -212,7 +203,7 @@ void Encoder::finish() {
   }
   self.writer->close();
   try {
-    self.publish();
+    join_packets({&self.fragments->path(), 1}, self.file, self.rate, self.frames, self.settings.metadata);
     self.fragments.reset();
   } catch (const Error& error) {
     // The copy needs additional disk space. The fragments are complete and playable, so they are kept.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/temporary_file.hpp"
 
 namespace weft::video {
 namespace {
@@ -37,7 +38,7 @@ InputPtr open_video(const std::filesystem::path& file, const std::filesystem::pa
   AVFormatContext* opened = nullptr;
   // The path is absolute, because in a relative path, libav would read the text before a colon as a protocol.
   check(avformat_open_input(&opened, std::filesystem::absolute(file).c_str(),
-                            av_find_input_format(is_matroska(reported_file) ? "matroska" : "mp4"), nullptr),
+                            av_find_input_format(container_of(reported_file)), nullptr),
         reported_file, "read the frames back");
   InputPtr input(opened);
   if (input->nb_streams != 1) fail(reported_file, "read the frames back", "expected one stream");
@@ -77,6 +78,31 @@ std::int64_t delay_of(const std::filesystem::path& file, const std::filesystem::
     av_packet_unref(packet.get());
   }
   return delay;
+}
+
+/// Reads `file`. Throws Error(output_failed) unless it contains each of `frames` frames once, frame k at time k /
+/// `rate`. In Matroska, only the nearest frame number is checked, because times are rounded to milliseconds.
+void verify_frames(const std::filesystem::path& file, const std::filesystem::path& reported_file, AVRational rate,
+                   int frames) {
+  const InputPtr input = open_video(file, reported_file);
+  const AVRational unit = input->streams[0]->time_base;
+  const PacketPtr packet = check_allocated(PacketPtr(av_packet_alloc()), reported_file);
+
+  std::vector<bool> seen(static_cast<std::size_t>(frames));
+  int count = 0;
+  while (read_packet(*input, *packet, reported_file)) {
+    const std::int64_t frame = av_rescale_q(packet->pts, unit, av_inv_q(rate));
+    // Matroska rounds times to milliseconds.
+    const bool on_time = is_matroska(reported_file) || av_compare_ts(packet->pts, unit, frame, av_inv_q(rate)) == 0;
+    const bool new_frame = frame >= 0 && frame < frames && !seen[frame];
+    if (!on_time || !new_frame) {
+      fail(reported_file, "verify the frames", fmt::format("packet {} is not one of {} frames", count, frames));
+    }
+    seen[frame] = true;
+    ++count;
+    av_packet_unref(packet.get());
+  }
+  if (count != frames) fail(reported_file, "verify the frames", fmt::format("{} of {} are there", count, frames));
 }
 
 }  // namespace
@@ -127,30 +153,30 @@ void VideoFileWriter::close() {
   output_.reset();
 }
 
-void copy_to_fast_start(std::span<const std::filesystem::path> from, const std::filesystem::path& to,
-                        const std::filesystem::path& reported_file, AVRational rate,
-                        const std::map<std::string, std::string>& metadata) {
-  const InputPtr first = open_video(from.front(), reported_file);
+void join_packets(std::span<const std::filesystem::path> from, const std::filesystem::path& file, AVRational rate,
+                  int frames, const std::map<std::string, std::string>& metadata) {
+  TemporaryFile whole(file);
+  const InputPtr first = open_video(from.front(), file);
   const AVCodecParameters& codec = *first->streams[0]->codecpar;
-  VideoFileWriter writer(to, reported_file, Mp4Layout::fast_start, codec, rate, metadata);
-  const PacketPtr packet = check_allocated(PacketPtr(av_packet_alloc()), reported_file);
+  VideoFileWriter writer(whole.path(), file, Mp4Layout::fast_start, codec, rate, metadata);
+  const PacketPtr packet = check_allocated(PacketPtr(av_packet_alloc()), file);
 
   // Packet k is decoded `delay` frames before time k, because B-frames need later frames. Files may differ in this
   // delay (it is 0 for a file of one frame), so the largest delay is used.
   std::int64_t delay = 0;
-  for (const std::filesystem::path& file : from) delay = std::max(delay, delay_of(file, reported_file, rate));
+  for (const std::filesystem::path& part : from) delay = std::max(delay, delay_of(part, file, rate));
 
   std::int64_t written = 0;
-  for (const std::filesystem::path& file : from) {
-    const InputPtr input = open_video(file, reported_file);
+  for (const std::filesystem::path& part : from) {
+    const InputPtr input = open_video(part, file);
     const AVStream& stream = *input->streams[0];
     if (!same_codec(codec, *stream.codecpar))
-      fail(reported_file, fmt::format("join {}", file.string()), "it is not encoded as the first one is");
+      fail(file, fmt::format("join {}", part.string()), "it is not encoded as the first one is");
     // A fragmented file cannot contain negative times, so libav has shifted all times by the delay. This loop subtracts
     // the time of the first packet. This packet is frame 0 of its file, because each stream starts with a key frame.
     const std::int64_t before = written;
     std::optional<std::int64_t> first_time;
-    for (; read_packet(*input, *packet, reported_file); ++written) {
+    for (; read_packet(*input, *packet, file); ++written) {
       av_packet_rescale_ts(packet.get(), stream.time_base, av_inv_q(rate));
       if (!first_time) first_time = packet->pts;
       packet->pts += before - *first_time;
@@ -160,29 +186,8 @@ void copy_to_fast_start(std::span<const std::filesystem::path> from, const std::
     }
   }
   writer.close();
-}
-
-void verify_frames(const std::filesystem::path& file, const std::filesystem::path& reported_file, AVRational rate,
-                   int frames) {
-  const InputPtr input = open_video(file, reported_file);
-  const AVRational unit = input->streams[0]->time_base;
-  const PacketPtr packet = check_allocated(PacketPtr(av_packet_alloc()), reported_file);
-
-  std::vector<bool> seen(static_cast<std::size_t>(frames));
-  int count = 0;
-  while (read_packet(*input, *packet, reported_file)) {
-    const std::int64_t frame = av_rescale_q(packet->pts, unit, av_inv_q(rate));
-    // Matroska rounds times to milliseconds.
-    const bool on_time = is_matroska(reported_file) || av_compare_ts(packet->pts, unit, frame, av_inv_q(rate)) == 0;
-    const bool new_frame = frame >= 0 && frame < frames && !seen[frame];
-    if (!on_time || !new_frame) {
-      fail(reported_file, "verify the frames", fmt::format("packet {} is not one of {} frames", count, frames));
-    }
-    seen[frame] = true;
-    ++count;
-    av_packet_unref(packet.get());
-  }
-  if (count != frames) fail(reported_file, "verify the frames", fmt::format("{} of {} are there", count, frames));
+  verify_frames(whole.path(), file, rate, frames);
+  whole.commit();
 }
 
 }  // namespace weft::video

@@ -38,15 +38,10 @@ class VideoFileWriter {
   OutputPtr output_;
 };
 
-/// Copies the packets of all files `from`, in this order, into a new fast-start file `to` (an absolute path). The first
-/// frame is at time zero. Throws Error(output_failed), also if the codec parameters of the files differ.
-void copy_to_fast_start(std::span<const std::filesystem::path> from, const std::filesystem::path& to,
-                        const std::filesystem::path& reported_file, AVRational rate,
-                        const std::map<std::string, std::string>& metadata);
-
-/// Reads `file`. Throws Error(output_failed) unless it contains each of `frames` frames once, frame k at time k /
-/// `rate`. In Matroska, only the nearest frame number is checked, because times are rounded to milliseconds.
-void verify_frames(const std::filesystem::path& file, const std::filesystem::path& reported_file, AVRational rate,
-                   int frames);
+/// Copies the packets of all files `from`, in this order, into a new fast-start file, verifies the time of each of its
+/// `frames` frames, and gives it the name `file`. The first frame is at time zero. Throws Error(output_failed), also if
+/// the codec parameters of the files differ.
+void join_packets(std::span<const std::filesystem::path> from, const std::filesystem::path& file, AVRational rate,
+                  int frames, const std::map<std::string, std::string>& metadata);
 
 }  // namespace weft::video
