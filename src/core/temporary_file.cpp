@@ -64,13 +64,6 @@ std::string reason(int error) {
   throw Error(ExitCode::output_failed, "{}: {}: {}", file.string(), what, why);
 }
 
-bool has_name(const fs::path& path, int descriptor) {
-  struct stat open {
-  }, named{};
-  return ::fstat(descriptor, &open) == 0 && ::lstat(path.c_str(), &named) == 0 && open.st_ino == named.st_ino &&
-         open.st_dev == named.st_dev;
-}
-
 bool lock(int descriptor) {
   return ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
 }
@@ -234,6 +227,13 @@ void remove_temporary_files() noexcept {
   for (Slot& slot : g_slots) {
     if (slot.state.load() == Slot::active) ::unlink(slot.path.data());
   }
+}
+
+bool has_name(const fs::path& path, int descriptor) {
+  struct stat open {
+  }, named{};
+  return ::fstat(descriptor, &open) == 0 && ::lstat(path.c_str(), &named) == 0 && open.st_ino == named.st_ino &&
+         open.st_dev == named.st_dev;
 }
 
 bool holds(const fs::path& file, std::string_view content) {

@@ -73,6 +73,9 @@ bool may_replace(const std::filesystem::path& file);
 /// The final name (or its hash) that a temporary name contains; empty if `temporary_name` is not a temporary name.
 std::string_view final_name_of(std::string_view temporary_name);
 
+/// Whether the open file or folder still has this name; another process may have removed or replaced it.
+bool has_name(const std::filesystem::path& path, int descriptor);
+
 /// Whether a file has exactly this content.
 bool holds(const std::filesystem::path& file, std::string_view content);
 

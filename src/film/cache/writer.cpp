@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -82,13 +81,6 @@ void make_folder(const fs::path& folder) {
                   folder.string(), name);
 }
 
-bool same_file(int descriptor, const fs::path& path) {
-  struct stat open {
-  }, named{};
-  return ::fstat(descriptor, &open) == 0 && ::stat(path.c_str(), &named) == 0 && open.st_ino == named.st_ino &&
-         open.st_dev == named.st_dev;
-}
-
 }  // namespace
 
 Lock::Lock(fs::path folder) : folder_(std::move(folder)) {
@@ -109,7 +101,7 @@ Lock::Lock(fs::path folder) : folder_(std::move(folder)) {
       throw Error(ExitCode::output_failed, "{}: cannot be locked: {}", file.string(), std::strerror(error));
     }
     // Between open() and flock(), the previous owner of the lock may have removed the folder. Then tries again.
-  } while (!same_file(descriptor_, file));
+  } while (!has_name(file, descriptor_));
 }
 
 Lock::~Lock() {
