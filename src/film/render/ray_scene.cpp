@@ -124,8 +124,6 @@ RayScene::RayScene() : tree_(std::make_unique<Tree>()) {
     throw Error(ExitCode::internal, "Embree: no device, error {}", static_cast<int>(rtcGetDeviceError(nullptr)));
 }
 RayScene::~RayScene() = default;
-RayScene::RayScene(RayScene&&) noexcept = default;
-RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
 void RayScene::build(std::span<const DrawnMesh> meshes) {
   if (tree_->scene != nullptr) rtcReleaseScene(tree_->scene);

@@ -53,8 +53,6 @@ class RayScene {
  public:
   RayScene();
   ~RayScene();
-  RayScene(RayScene&&) noexcept;
-  RayScene& operator=(RayScene&&) noexcept;
 
   /// Replaces the surfaces. Copies positions and triangles. But the triangles and Holes of a mesh with holes must stay
   /// valid while rays are traced, because they give the opacity at hits. Throws std::bad_alloc, or Error(internal) with
