@@ -422,8 +422,15 @@ void Renderer::Impl::draw_layers(const Plan& plan, const std::optional<EarlierFr
   layers = {settings.width, settings.height, {}};
   std::vector<Eigen::Vector4f> surfaces;
   outlines->extract_surfaces(seen, unsmoothed, surfaces);
-  for (const char* name : {"R", "G", "B", "A", "picture.R", "picture.G", "picture.B"})
+  const auto add = [&](const char* name) {
     layers.channels.push_back({name, std::vector<float>(surfaces.size()), true});
+  };
+  for (const char* name : {"R", "G", "B", "A", "picture.R", "picture.G", "picture.B"}) add(name);
+  std::vector<float> shadows;
+  if (!open_floor.empty()) {
+    shadows = floor_shadows(seen, unsmoothed, open_floor, settings.width, settings.height);
+    add("caught.A");
+  }
   for (int y = 0; y < settings.height; ++y) {
     for (int x = 0; x < settings.width; ++x) {
       const std::size_t at = static_cast<std::size_t>(y) * settings.width + x;
@@ -431,19 +438,9 @@ void Renderer::Impl::draw_layers(const Plan& plan, const std::optional<EarlierFr
       const Eigen::Vector3f picture = linear_of(rgba[from]);
       for (int k = 0; k < 4; ++k) layers.channels[k].values[at] = surfaces[from][k];
       for (int k = 0; k < 3; ++k) layers.channels[4 + k].values[at] = picture[k];
+      const float covered = surfaces[from].w();
+      if (!shadows.empty()) layers.channels[7].values[at] = covered + (1 - covered) * shadows[from];
     }
-  }
-  if (!open_floor.empty()) {
-    const std::vector<float> shadows = floor_shadows(seen, unsmoothed, open_floor, settings.width, settings.height);
-    std::vector<float> alpha(surfaces.size());
-    for (int y = 0; y < settings.height; ++y) {
-      for (int x = 0; x < settings.width; ++x) {
-        const std::size_t from = static_cast<std::size_t>(settings.height - 1 - y) * settings.width + x;
-        const float covered = surfaces[from].w();
-        alpha[static_cast<std::size_t>(y) * settings.width + x] = covered + (1 - covered) * shadows[from];
-      }
-    }
-    layers.channels.push_back({"caught.A", std::move(alpha), true});
   }
   data->draw(passes->surfaces, plan.floor, plan.view, earlier, layers);
 }
