@@ -12,7 +12,6 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <thread>
 
@@ -23,26 +22,12 @@ namespace weft {
 namespace {
 
 namespace fs = std::filesystem;
+using support::expect_error;
 
-class TemporaryFileTest : public ::testing::Test {
+class TemporaryFileTest : public support::TestFolder {
  protected:
-  void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(::testing::TempDir()) / fmt::format("weft_{}_{}", info->test_suite_name(), info->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  static std::string content(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-  std::size_t entries() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
-  }
-
-  fs::path folder_;
+  static std::string content(const fs::path& file) { return support::read_bytes(file); }
+  std::size_t entries() const { return files().size(); }
 };
 
 TEST_F(TemporaryFileTest, NothingAppearsUnderTheFinalNameBeforeCommit) {
@@ -56,15 +41,10 @@ TEST_F(TemporaryFileTest, NothingAppearsUnderTheFinalNameBeforeCommit) {
 }
 
 TEST_F(TemporaryFileTest, FoldersAndDevicesAreNeverReplaced) {
-  for (const fs::path& name : {folder_, folder_ / "", fs::path("/dev/null")}) {
-    try {
-      TemporaryFile temporary(name);
-      ADD_FAILURE() << name;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::output_failed);
-      EXPECT_EQ(error.what(), name.string() + ": expected the name of a file to write, got a folder or a device");
-    }
-  }
+  for (const fs::path& name : {folder_, folder_ / "", fs::path("/dev/null")})
+    expect_error(ExitCode::output_failed,
+                 name.string() + ": expected the name of a file to write, got a folder or a device",
+                 [&] { TemporaryFile temporary(name); });
 }
 
 TEST_F(TemporaryFileTest, LeavesNothingBehindWithoutCommit) {
@@ -112,16 +92,11 @@ TEST_F(TemporaryFileTest, AFileThatSomebodyMakesMeanwhileStays) {
     TemporaryFile temporary(file);
     std::ofstream(temporary.path()) << "new";
     std::ofstream(file) << "precious";
-    try {
-      temporary.commit();
-      ADD_FAILURE() << "replaced";
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::output_failed);
-      EXPECT_EQ(error.what(),
-                file.string() +
-                    ": was made by somebody else while this command worked, and is kept; give --overwrite "
-                    "to replace it, or another name");
-    }
+    expect_error(ExitCode::output_failed,
+                 file.string() +
+                     ": was made by somebody else while this command worked, and is kept; give --overwrite "
+                     "to replace it, or another name",
+                 [&] { temporary.commit(); });
   }
   EXPECT_EQ(content(file), "precious");
   EXPECT_EQ(entries(), 1u) << "nothing half is left";
@@ -138,25 +113,16 @@ TEST_F(TemporaryFileTest, AFolderThatWasRemovedIsNotMadeAnew) {
   const fs::path folder = folder_ / "frames";
   write_file(folder / "1.txt", "1");
   fs::remove_all(folder);
-  try {
-    write_file(folder / "2.txt", "2");
-    ADD_FAILURE() << "made anew";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::output_failed);
-    EXPECT_EQ(error.what(), (folder / "2.txt").string() + ": cannot be written: No such file or directory");
-  }
+  expect_error(ExitCode::output_failed, (folder / "2.txt").string() + ": cannot be written: No such file or directory",
+               [&] { write_file(folder / "2.txt", "2"); });
   EXPECT_EQ(entries(), 0u);
 }
 
 TEST_F(TemporaryFileTest, SaysWhyAFolderCannotBeMade) {
   write_file(folder_ / "plain", "");
-  try {
-    write_file(folder_ / "plain" / "a.txt", "x");
-    FAIL() << "wrote below a plain file";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::output_failed);
-    EXPECT_EQ(error.what(), (folder_ / "plain" / "a.txt").string() + ": cannot make the folder: Not a directory");
-  }
+  const fs::path file = folder_ / "plain" / "a.txt";
+  expect_error(ExitCode::output_failed, file.string() + ": cannot make the folder: Not a directory",
+               [&] { write_file(file, "x"); });
 }
 
 TEST_F(TemporaryFileTest, SaysWhyADiskCannotTakeTheData) {
@@ -242,8 +208,8 @@ TEST_F(TemporaryFileTest, NamesMayBeAsLongAsTheFileSystemAllows) {
   const TemporaryFile first(one), second(other);
   EXPECT_FALSE(final_name_of(first.path().filename().string()).empty()) << first.path();
   EXPECT_THROW(TemporaryFile again(one), Error);
-  support::expect_error(ExitCode::output_failed, "File name too long",
-                        [&] { write_file(folder_ / std::string(256, 'a'), "whole"); });
+  expect_error(ExitCode::output_failed, "File name too long",
+               [&] { write_file(folder_ / std::string(256, 'a'), "whole"); });
 }
 
 TEST_F(TemporaryFileTest, IsOneForEachFinalNameAtATime) {
