@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "core/error.hpp"
 #include "film/render/camera_path.hpp"
 #include "film/render/view.hpp"
 #include "render/scaled_pictures.hpp"
 #include "render/snapshots.hpp"
+#include "support/test_folder.hpp"
 
 namespace weft::render {
 namespace {
@@ -144,13 +144,8 @@ TEST(Framing, CameraIsFoundByNameAndAWrongNameListsThoseThereAre) {
   snapshot.cameras[1].name = "side";
   EXPECT_EQ(find_camera(snapshot, "")->name, "front");
   EXPECT_EQ(find_camera(snapshot, "side")->name, "side");
-  try {
-    find_camera(snapshot, "top");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::usage);
-    EXPECT_STREQ(error.what(), "--camera: expected one of the scene's cameras (front, side), got 'top'");
-  }
+  support::expect_error(ExitCode::usage, "--camera: expected one of the scene's cameras (front, side), got 'top'",
+                        [&] { find_camera(snapshot, "top"); });
 }
 
 }  // namespace

@@ -12,49 +12,46 @@ namespace {
 
 constexpr int kPictureWidth = 320, kPictureHeight = 200;
 
+/// Floor as seen by a low eye, before anything stands on it.
+frame::FrameSnapshot wide_floor() {
+  frame::FrameSnapshot snapshot;
+  snapshot.stage = stage_without_sky();
+  add_floor(snapshot).appearance.color = Vec3::Constant(0.6);
+  snapshot.cameras = {camera_at(Vec3(0, 0, 1.7), Vec3(0, 10, 1.65), 30)};
+  snapshot.lights = {sun(Vec3(0.5, 0.5, -1))};
+  return snapshot;
+}
+
+/// Expects that wide_floor() has one colour up to the horizon and the backdrop another.
+void expect_horizon(const frame::FrameSnapshot& snapshot, Quality quality) {
+  Settings settings;
+  settings.width = kPictureWidth;
+  settings.height = kPictureHeight;
+  settings.quality = quality;
+  const image::Image image = Renderer(settings).draw(snapshot);
+  // Row of the horizon, counted from the top: above the middle by 0.005 / tan 15° of half the height.
+  const int horizon = static_cast<int>(kPictureHeight / 2 * (1 - 0.005 / std::tan(15 * std::numbers::pi / 180)));
+  for (int y = horizon + 3; y < kPictureHeight; ++y)
+    EXPECT_NEAR(image.pixel(160, y)[1], image.pixel(160, kPictureHeight - 1)[1], 1.5) << y;
+  EXPECT_GT(std::abs(image.pixel(160, horizon - 20)[1] - image.pixel(160, kPictureHeight - 1)[1]), 8);
+}
+
 // The surroundings are a thousand times as large as the height of the eye: the floor fades within the last pixel below
 // the horizon, and shows its plain light in all other pixels. If the fading were computed on a grid of 16 pixels, it
 // would extend over up to 16 pixels.
 TEST(Picture, FloorOfHugeSurroundingsFadesAtTheHorizonOnly) {
-  frame::FrameSnapshot snapshot;
-  snapshot.stage = stage_without_sky();
-  add_floor(snapshot).appearance.color = Vec3::Constant(0.6);
+  frame::FrameSnapshot snapshot = wide_floor();
   for (const double side : {-1, 1})
     add_square(snapshot, frame::ObjectKind::obstacle, Vec3(1700 * side, 0, 1), Vec3::UnitZ(), Vec3::UnitX(), 1);
-  snapshot.cameras = {camera_at(Vec3(0, 0, 1.7), Vec3(0, 10, 1.65), 30)};
-  snapshot.lights = {sun(Vec3(0.5, 0.5, -1))};
-  // Row of the horizon, counted from the top: above the middle by 0.005 / tan 15° of half the height.
-  const int horizon = static_cast<int>(kPictureHeight / 2 * (1 - 0.005 / std::tan(15 * std::numbers::pi / 180)));
-  for (const Quality quality : {Quality::preview, Quality::final}) {
-    Settings settings;
-    settings.width = kPictureWidth;
-    settings.height = kPictureHeight;
-    settings.quality = quality;
-    const image::Image image = Renderer(settings).draw(snapshot);
-    for (int y = horizon + 3; y < kPictureHeight; ++y)
-      EXPECT_NEAR(image.pixel(160, y)[1], image.pixel(160, kPictureHeight - 1)[1], 1.5) << y;
-    EXPECT_GT(std::abs(image.pixel(160, horizon - 20)[1] - image.pixel(160, kPictureHeight - 1)[1]), 8);
-  }
+  for (const Quality quality : {Quality::preview, Quality::final}) expect_horizon(snapshot, quality);
 }
 
 // In a run, a square moves by kilometres. In each frame, the floor reaches as far as the fading, to the horizon.
 TEST(Picture, FloorOfALongRunReachesTheHorizon) {
-  frame::FrameSnapshot snapshot;
-  snapshot.stage = stage_without_sky();
-  add_floor(snapshot).appearance.color = Vec3::Constant(0.6);
+  frame::FrameSnapshot snapshot = wide_floor();
   add_square(snapshot, frame::ObjectKind::obstacle, Vec3(0, 0, 1), Vec3::UnitZ(), Vec3::UnitX(), 0.5).run_bounds =
       Box3(Vec3(-1700, -0.5, 1), Vec3(1700, 0.5, 1));
-  snapshot.cameras = {camera_at(Vec3(0, 0, 1.7), Vec3(0, 10, 1.65), 30)};
-  snapshot.lights = {sun(Vec3(0.5, 0.5, -1))};
-  const int horizon = static_cast<int>(kPictureHeight / 2 * (1 - 0.005 / std::tan(15 * std::numbers::pi / 180)));
-  Settings settings;
-  settings.width = kPictureWidth;
-  settings.height = kPictureHeight;
-  settings.quality = Quality::preview;
-  const image::Image image = Renderer(settings).draw(snapshot);
-  for (int y = horizon + 3; y < kPictureHeight; ++y)
-    EXPECT_NEAR(image.pixel(160, y)[1], image.pixel(160, kPictureHeight - 1)[1], 1.5) << y;
-  EXPECT_GT(std::abs(image.pixel(160, horizon - 20)[1] - image.pixel(160, kPictureHeight - 1)[1]), 8);
+  expect_horizon(snapshot, Quality::preview);
 }
 
 // The drawn floor extends for 130 km. At this distance, single precision rounds by millimetres.

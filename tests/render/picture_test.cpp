@@ -14,6 +14,7 @@
 #include "film/image/color.hpp"
 #include "film/render/renderer.hpp"
 #include "render/snapshots.hpp"
+#include "support/test_folder.hpp"
 
 namespace weft::render {
 namespace {
@@ -466,12 +467,7 @@ TEST(Picture, SizesOutsideTheDriversRangeAreErrors) {
     Settings wrong = settings();
     wrong.width = width;
     wrong.height = height;
-    try {
-      Renderer renderer(wrong);
-      ADD_FAILURE() << width << "x" << height;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::usage);
-    }
+    support::expect_error(ExitCode::usage, "--size: expected 1x1 to ", [&] { Renderer renderer(wrong); });
   }
 }
 
