@@ -249,7 +249,8 @@ TEST(Codec, SurfacesThatMakeNoSenseAreRefused) {
 TEST(Codec, NoBytesCrashTheDecoder) {
   const Sample sample;
   const Surfaces surfaces = surfaces_of(*sample.snapshot(0));
-  const std::string first = encode_surfaces(surfaces), second = encode_frame(*sample.snapshot(2), {}, surfaces);
+  const std::string first = encode_surfaces(surfaces),
+                    second = encode_frame(*sample.snapshot(2), sample.report(2), surfaces);
   std::mt19937 random(6);
   int refused = 0;
   const auto attempt = [&](const auto& decode) {
@@ -263,7 +264,7 @@ TEST(Codec, NoBytesCrashTheDecoder) {
   for (std::size_t size = 0; size < second.size(); ++size)
     attempt([&] { decode_frame(second.substr(0, size), 2, surfaces); });
   EXPECT_EQ(refused, static_cast<int>(first.size() + second.size())) << "a truncated payload was taken for whole";
-  for (int round = 0; round < 20'000; ++round) {
+  for (int round = 0; round < 50'000; ++round) {
     std::string a = first, b = second;
     for (std::uint32_t flips = 1 + random() % 4; flips > 0; --flips) {
       a[random() % a.size()] = static_cast<char>(random());

@@ -4,7 +4,6 @@
 #include <random>
 
 #include "cache/sample.hpp"
-#include "film/cache/codec.hpp"
 #include "film/cache/container.hpp"
 #include "film/cache/names.hpp"
 #include "film/cache/reader.hpp"
@@ -80,38 +79,14 @@ std::string with_bytes_changed(std::string bytes, std::mt19937& random) {
   return bytes;
 }
 
-template <class Read>
-bool is_refused(const Read& read) {
-  try {
-    read();
-    return false;
-  } catch (const std::runtime_error&) {
-    return true;
-  }
-}
-
 TEST_F(DamagedCache, NoneOfAHundredThousandChangesOfBytesIsMissed) {
   std::vector<std::string> whole;
   for (const std::string& name : binary_files_) whole.push_back(support::read_bytes(folder_ / "c" / name));
   std::mt19937 random(20261121);
   for (int trial = 0; trial < 100'000; ++trial) {
     const std::string broken = with_bytes_changed(whole[trial % 4], random);
-    ASSERT_TRUE(is_refused([&] { unpack(broken); })) << "trial " << trial;
+    ASSERT_THROW(unpack(broken), std::runtime_error) << "trial " << trial;
   }
-}
-
-// A faulty writer or an attacker can make invalid content with a valid checksum.
-TEST_F(DamagedCache, ContentThatIsWrongUnderARightChecksumIsReadOrRefused) {
-  const Surfaces surfaces = surfaces_of(*sample_.snapshot(0));
-  const std::string frame = encode_frame(*sample_.snapshot(1), sample_.report(1), surfaces);
-  const std::string shared = encode_surfaces(surfaces);
-  std::mt19937 random(7);
-  int refused = 0;
-  for (int trial = 0; trial < 50'000; ++trial) {
-    refused += is_refused([&] { decode_frame(with_bytes_changed(frame, random), 1, surfaces); }) ? 1 : 0;
-    refused += is_refused([&] { decode_surfaces(with_bytes_changed(shared, random)); }) ? 1 : 0;
-  }
-  EXPECT_GT(refused, 0);
 }
 
 }  // namespace
