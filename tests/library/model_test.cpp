@@ -44,6 +44,13 @@ Body ball() {
   return body;
 }
 
+Model drape() {
+  Model model;
+  model.cloths = {sheet()};
+  model.bodies = {ball()};
+  return model;
+}
+
 const char* const kSameScene = R"(
 [[cloth]]
 name = "sheet"
@@ -74,9 +81,7 @@ void expect_refused(const std::string& text, const Model& model, const Simulatio
 }
 
 TEST(LibraryModel, HasTheBitsOfTheSceneThatSaysTheSame) {
-  Model model;
-  model.cloths = {sheet()};
-  model.bodies = {ball()};
+  Model model = drape();
   Simulation of_model(model), of_scene(Scene::parse(kSameScene));
   EXPECT_EQ(positions_after(of_model, 12), positions_after(of_scene, 12));
   EXPECT_LT(of_model.frame().report().min_distance, 0.01) << "the sheet has reached the ball";
@@ -192,9 +197,7 @@ TEST(LibraryModel, HasFramesThatOutliveTheirSimulation) {
   std::optional<Frame> kept;
   std::vector<Vector> before;
   {
-    Model model;
-    model.cloths = {sheet()};
-    model.bodies = {ball()};
+    Model model = drape();
     Simulation simulation(model);
     before = positions_after(simulation, 1);
     kept = simulation.frame();
@@ -242,9 +245,7 @@ TEST(LibraryModel, MovesBodiesByForcesAndByTheCaller) {
 }
 
 TEST(LibraryModel, ContinuesFromASavedStateAndRefusesThatOfAnother) {
-  Model model;
-  model.cloths = {sheet()};
-  model.bodies = {ball()};
+  Model model = drape();
   Simulation whole(model);
   positions_after(whole, 6);
   const std::string state = whole.save();
@@ -313,9 +314,7 @@ TEST(LibraryWeather, ChangesTheWindAndIsSaved) {
 
 // A frame can be interrupted at any time and computed again, with the same bits.
 TEST(LibraryInterrupt, EndsAFrameThatCanBeComputedAgain) {
-  Model model;
-  model.cloths = {sheet()};
-  model.bodies = {ball()};
+  Model model = drape();
   Simulation whole(model), interrupted(model);
   positions_after(whole, 9), positions_after(interrupted, 8);
   const std::vector<Vector> before = positions_after(interrupted, 0);
@@ -340,9 +339,7 @@ TEST(LibraryInterrupt, EndsAFrameThatCanBeComputedAgain) {
 
 TEST(LibraryModel, WithAValueThatCannotBeIsRefusedByName) {
   const auto with = [](const std::function<void(Model&)>& change) {
-    Model model;
-    model.cloths = {sheet()};
-    model.bodies = {ball()};
+    Model model = drape();
     change(model);
     return model;
   };
@@ -433,9 +430,7 @@ TEST(LibraryModel, WithAValueThatCannotBeIsRefusedByName) {
 // Meshes of other programs often have two triangles in one place. The faces of the ball are at least 98.3 mm from its
 // middle: 0.1 m times the square of the cosine of half a segment, 7.5°.
 TEST(LibraryModel, TakesBodiesWhoseEdgesAreOfThreeTriangles) {
-  Model model;
-  model.cloths = {sheet()};
-  model.bodies = {ball()};
+  Model model = drape();
   Simulation plain(model);
   model.bodies[0].mesh.triangles.push_back(model.bodies[0].mesh.triangles[0]);
   Simulation doubled(model);
@@ -446,9 +441,7 @@ TEST(LibraryModel, TakesBodiesWhoseEdgesAreOfThreeTriangles) {
 }
 
 TEST(LibraryModel, ThatTouchesAtTheStartIsRefusedAsAScene) {
-  Model model;
-  model.cloths = {sheet()};
-  model.bodies = {ball()};
+  Model model = drape();
   model.bodies[0].pose.position = {0, 0, 0};
   try {
     Simulation{model};

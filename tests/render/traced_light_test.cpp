@@ -112,6 +112,9 @@ double form_factor(double a, double b, double c) {
   return 4 / (2 * std::numbers::pi) * (x / p * std::atan(y / p) + y / q * std::atan(x / q));
 }
 
+/// White on both sides of the two triangles of a rectangle.
+const ReflectingSurface kWhiteRectangle{{{2, Vector3f::Ones(), Vector3f::Ones()}}};
+
 Irradiance no_light() {
   Irradiance irradiance;
   irradiance.fill(Vec3::Zero());
@@ -144,15 +147,14 @@ ReflectedLight::Arriving mean_arriving(const ReflectedLight& light, int count) {
 TEST(ReflectedLight, OfARectangleIsItsFormFactor) {
   constexpr int kRays = 80000;
   // A sun from below lights the rectangle fully.
-  frame::Light sun;
-  sun.direction = Vec3(0, 0, 1);
+  const Lamp lamp = make_lamp(sun(Vec3::UnitZ()), Vec3::Ones());
   for (const double height : {0.2, 0.5, 2.0}) {
     const Mesh mesh = rectangle(0.5, 0.3, height);
     const DrawnMesh drawn = mesh.drawn();
     RayScene scene;
     scene.build({&drawn, 1});
-    const ReflectedLight light(scene, {{{{2, Vector3f(1, 0.5f, 0), Vector3f::Zero()}}}}, {make_lamp(sun, Vec3::Ones())},
-                               no_light(), {}, Vector3f::Zero());
+    const ReflectedLight light(scene, {{{{2, Vector3f(1, 0.5f, 0), Vector3f::Zero()}}}}, {lamp}, no_light(), {},
+                               Vector3f::Zero());
     const ReflectedLight::Arriving found = mean_arriving(light, kRays);
     const double expected = form_factor(0.5, 0.3, height);
     const double noise = 4 * std::sqrt(expected * (1 - expected) / kRays);
@@ -178,10 +180,8 @@ TEST(ReflectedLight, SurfacesAreShadedByOthers) {
   for (const Mesh& mesh : meshes) drawn.push_back(mesh.drawn());
   RayScene scene;
   scene.build(drawn);
-  frame::Light sun;
-  sun.direction = Vec3(0, 0, 1);
-  const ReflectingSurface white{{{2, Vector3f::Ones(), Vector3f::Ones()}}};
-  const ReflectedLight light(scene, {white, white}, {make_lamp(sun, Vec3::Ones())}, no_light(), {}, Vector3f::Zero());
+  const ReflectedLight light(scene, {kWhiteRectangle, kWhiteRectangle}, {make_lamp(sun(Vec3::UnitZ()), Vec3::Ones())},
+                             no_light(), {}, Vector3f::Zero());
   EXPECT_EQ(mean_arriving(light, 8000).light.at(0), Vector3f::Zero());
 }
 
@@ -191,10 +191,7 @@ TEST(ReflectedLight, TheFloorHidesWhatIsBelowIt) {
   const DrawnMesh drawn = mesh.drawn();
   RayScene scene;
   scene.build({&drawn, 1});
-  frame::Light sun;
-  sun.direction = Vec3(0, 0, 1);
-  const ReflectingSurface white{{{2, Vector3f::Ones(), Vector3f::Ones()}}};
-  const ReflectedLight light(scene, {white}, {make_lamp(sun, Vec3::Ones())}, no_light(),
+  const ReflectedLight light(scene, {kWhiteRectangle}, {make_lamp(sun(Vec3::UnitZ()), Vec3::Ones())}, no_light(),
                              Floor{Vec3(0, 0, 1), Vec3(0, 0, -1), {}}, Vector3f::Ones());
   const ReflectedLight::Arriving found = mean_arriving(light, 8000);
   EXPECT_EQ(found.open[0], 1);
@@ -205,8 +202,7 @@ TEST(ReflectedLight, TheFloorHidesWhatIsBelowIt) {
 // floor, and a shadow on the floor subtracts the light of a sun. A white floor is 1 m above the origin; the lamp is far
 // below it, in the second case behind a plate.
 TEST(ReflectedLight, FloorInTheLightOfASpotAddsThisLight) {
-  frame::Light sun, spot;
-  sun.direction = Vec3(0, 0, 1);
+  frame::Light spot;
   spot.kind = frame::Light::Kind::spot;
   spot.position = Vec3(0, 0, -1000);
   spot.target = Vec3(0, 0, 1);
@@ -217,12 +213,11 @@ TEST(ReflectedLight, FloorInTheLightOfASpotAddsThisLight) {
     RayScene scene;
     scene.build(drawn);
     const auto reflected = [&](const frame::Light& light) {
-      const ReflectingSurface white{{{2, Vector3f::Ones(), Vector3f::Ones()}}};
-      const ReflectedLight reflection(scene, {white}, {make_lamp(light, Vec3::Ones())}, no_light(),
+      const ReflectedLight reflection(scene, {kWhiteRectangle}, {make_lamp(light, Vec3::Ones())}, no_light(),
                                       Floor{Vec3(0, 0, 1), Vec3(0, 0, -1), {}}, Vector3f::Ones());
       return mean_arriving(reflection, 8000).light.at(0).x();
     };
-    EXPECT_NEAR(reflected(sun), shaded ? -1 : 0, 0.01);
+    EXPECT_NEAR(reflected(sun(Vec3::UnitZ())), shaded ? -1 : 0, 0.01);
     EXPECT_NEAR(reflected(spot), shaded ? 0 : 1, 0.01);
   }
 }
