@@ -28,6 +28,14 @@ void drawing_for(std::size_t count, std::size_t chunk, const Body& body) {
   helper_cpu_seconds += helped;
 }
 
+/// Calls body(y) for each of `rows` rows of a picture by drawing_for(), `chunk` rows at once.
+template <class Body>
+void drawing_rows(int rows, const Body& body, std::size_t chunk = 8) {
+  drawing_for(static_cast<std::size_t>(rows), chunk, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) body(y);
+  });
+}
+
 /// CPU time of one picture, from the construction of the timer on. All pictures of the process
 /// share the rasteriser threads. If several timers exist, the time of these threads is split
 /// equally among them.

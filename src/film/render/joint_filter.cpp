@@ -59,30 +59,28 @@ void pass(std::span<const Plane> from, std::span<Plane> to, const PixelPoints& p
   constexpr std::size_t kMaxPlanes = 4;
   assert(from.size() <= kMaxPlanes && to.size() == from.size() && kFilterReach * step <= Plane::kBorder);
   const int width = points.width(), height = points.height();
-  drawing_for(static_cast<std::size_t>(height), std::size_t{8}, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      const Rows here(points, y);
-      for (int x = 0; x < width; x += kLanes) {
-        Lanes total = Lanes::Zero();
-        std::array<Lanes, kMaxPlanes> sums;
-        sums.fill(Lanes::Zero());
-        for (int k = -kFilterReach; k <= kFilterReach; ++k) {
-          const int dy = kAlongRows ? 0 : k * step, dx = kAlongRows ? k * step : 0;
-          if (y + dy < 0 || y + dy >= height) continue;
-          Lanes weights = neighbor_weights<kLanes>(here, x, Rows(points, y + dy), x + dx, kAny);
-          if (step > 1 && k != 0) {
-            // The filter with step 1 has run before and has left little noise. Larger differences are features, which
-            // the filter must keep.
-            Lanes differences = Lanes::Zero();
-            for (const Plane& plane : from)
-              differences += (load(plane.row(y) + x) - load(plane.row(y + dy) + x + dx)).abs();
-            weights /= 1 + (differences / kNoise).square();
-          }
-          total += weights;
-          for (std::size_t p = 0; p < from.size(); ++p) sums[p] += weights * load(from[p].row(y + dy) + x + dx);
+  drawing_rows(height, [&](int y) {
+    const Rows here(points, y);
+    for (int x = 0; x < width; x += kLanes) {
+      Lanes total = Lanes::Zero();
+      std::array<Lanes, kMaxPlanes> sums;
+      sums.fill(Lanes::Zero());
+      for (int k = -kFilterReach; k <= kFilterReach; ++k) {
+        const int dy = kAlongRows ? 0 : k * step, dx = kAlongRows ? k * step : 0;
+        if (y + dy < 0 || y + dy >= height) continue;
+        Lanes weights = neighbor_weights<kLanes>(here, x, Rows(points, y + dy), x + dx, kAny);
+        if (step > 1 && k != 0) {
+          // The filter with step 1 has run before and has left little noise. Larger differences are features, which
+          // the filter must keep.
+          Lanes differences = Lanes::Zero();
+          for (const Plane& plane : from)
+            differences += (load(plane.row(y) + x) - load(plane.row(y + dy) + x + dx)).abs();
+          weights /= 1 + (differences / kNoise).square();
         }
-        for (std::size_t p = 0; p < to.size(); ++p) Eigen::Map<Lanes>(to[p].row(y) + x) = sums[p] / total.max(1e-6f);
+        total += weights;
+        for (std::size_t p = 0; p < from.size(); ++p) sums[p] += weights * load(from[p].row(y + dy) + x + dx);
       }
+      for (std::size_t p = 0; p < to.size(); ++p) Eigen::Map<Lanes>(to[p].row(y) + x) = sums[p] / total.max(1e-6f);
     }
   });
 }
@@ -100,26 +98,24 @@ void smooth_where(Plane& plane, Plane& scratch, const Plane& wanted, const Plane
   const Plane& from = scratch;
   const int width = points.width(), height = points.height(), reach = kFilterReach * step;
   const float wide = kNarrow * static_cast<float>(step);
-  drawing_for(static_cast<std::size_t>(height), std::size_t{8}, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      const Rows here(points, y);
-      for (int x = 0; x < width; x += kLanes) {
-        const Lanes asked = load(wanted.row(y) + x), own = load(from.row(y) + x);
-        if (!(asked > 0).any()) continue;
-        Lanes sum = Lanes::Zero(), total = sum;
-        for (int v = std::max(y - reach, y % step); v <= std::min(y + reach, height - 1); v += step) {
-          const Rows there(points, v);
-          for (int dx = -reach; dx <= reach; dx += step) {
-            const Lanes values = load(from.row(v) + x + dx);
-            Lanes weights = load(known.row(v) + x + dx) * neighbor_weights<kLanes>(here, x, there, x + dx, wide);
-            if (step > 1) weights /= 1 + ((values - own) / kNoise).square();
-            sum += weights * values;
-            total += weights;
-          }
+  drawing_rows(height, [&](int y) {
+    const Rows here(points, y);
+    for (int x = 0; x < width; x += kLanes) {
+      const Lanes asked = load(wanted.row(y) + x), own = load(from.row(y) + x);
+      if (!(asked > 0).any()) continue;
+      Lanes sum = Lanes::Zero(), total = sum;
+      for (int v = std::max(y - reach, y % step); v <= std::min(y + reach, height - 1); v += step) {
+        const Rows there(points, v);
+        for (int dx = -reach; dx <= reach; dx += step) {
+          const Lanes values = load(from.row(v) + x + dx);
+          Lanes weights = load(known.row(v) + x + dx) * neighbor_weights<kLanes>(here, x, there, x + dx, wide);
+          if (step > 1) weights /= 1 + ((values - own) / kNoise).square();
+          sum += weights * values;
+          total += weights;
         }
-        Eigen::Map<Lanes> result(plane.row(y) + x);
-        result = (asked > 0 && total > 0).select(sum / total, result);
       }
+      Eigen::Map<Lanes> result(plane.row(y) + x);
+      result = (asked > 0 && total > 0).select(sum / total, result);
     }
   });
 }

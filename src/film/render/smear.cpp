@@ -111,16 +111,14 @@ void Smear::find_motions(std::span<const SurfaceBuffers> surfaces, const View& v
 /// Adds the motion of the floor where it is visible. The motion is that of the camera.
 void Smear::find_floor_motions(const Floor& floor, const View& view, const View& from_view, const View& to_view) {
   if (longest_floor_motion(floor, view, from_view, to_view, width_, height_) < kMinMotion) return;
-  drawing_for(static_cast<std::size_t>(height_), kTile, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < width_; ++x) {
-        PixelMotion& pixel = motions_[static_cast<std::size_t>(y) * width_ + x];
-        PixelMotion found = floor_motion(floor, view, x + 0.5, y + 0.5, from_view, to_view, width_, height_);
-        const float length = found.motion.norm();
-        if (length < kMinMotion || found.nearness <= pixel.nearness) continue;
-        if (length > kMaxMotion) found.motion *= kMaxMotion / length;
-        pixel = found;
-      }
+  drawing_rows(height_, [&](int y) {
+    for (int x = 0; x < width_; ++x) {
+      PixelMotion& pixel = motions_[static_cast<std::size_t>(y) * width_ + x];
+      PixelMotion found = floor_motion(floor, view, x + 0.5, y + 0.5, from_view, to_view, width_, height_);
+      const float length = found.motion.norm();
+      if (length < kMinMotion || found.nearness <= pixel.nearness) continue;
+      if (length > kMaxMotion) found.motion *= kMaxMotion / length;
+      pixel = found;
     }
   });
 }
@@ -183,14 +181,11 @@ void Smear::add(std::span<const SurfaceBuffers> surfaces, const std::optional<Fl
   if (floor) find_floor_motions(*floor, view, from_view, to_view);
   dilate_motions();
   const int columns = (width_ + kTile - 1) / kTile;
-  drawing_for(static_cast<std::size_t>(height_), kTile, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row) {
-      for (int x = 0; x < width_; ++x) {
-        const int y = static_cast<int>(row);
-        const std::size_t at = row * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
-        const Eigen::Vector2f& motion = dilated_motions_[static_cast<std::size_t>(y / kTile) * columns + x / kTile];
-        sum[at] += motion.norm() < kMinMotion ? sharp[at] : smear_pixel(x, y, motion, sharp);
-      }
+  drawing_rows(height_, [&](int y) {
+    for (int x = 0; x < width_; ++x) {
+      const std::size_t at = static_cast<std::size_t>(y) * width_ + x;
+      const Eigen::Vector2f& motion = dilated_motions_[static_cast<std::size_t>(y / kTile) * columns + x / kTile];
+      sum[at] += motion.norm() < kMinMotion ? sharp[at] : smear_pixel(x, y, motion, sharp);
     }
   });
 }

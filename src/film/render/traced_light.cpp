@@ -14,7 +14,6 @@ using Eigen::Vector2f, Eigen::Vector3f;
 using Kind = PixelPoints::Kind;
 
 constexpr float kGoldenAngle = 2.39996323f;  // [rad]
-constexpr std::size_t kRowsAtOnce = 8;       // chunk of parallel loops [rows]
 constexpr int kRotations = 64;    // number of rotations of the points on a lamp, a power of 2 (rotation_index())
 constexpr int kFirstRays = 1;     // rays per point of the first pass, which finds penumbrae
 constexpr int kFloorTile = 16;    // side of a tile of shaded floor [pixels]
@@ -100,10 +99,10 @@ void find_penumbrae(const Plane& lit, const Plane& known, const PixelPoints& poi
   const int columns = (width + kPenumbraTile - 1) / kPenumbraTile, rows = (height + kPenumbraTile - 1) / kPenumbraTile;
   std::vector<char> mixed(static_cast<std::size_t>(columns) * rows);
   const auto for_rows = [&](const auto& visit) {
-    drawing_for(static_cast<std::size_t>(rows), std::size_t{1}, [&](std::size_t begin, std::size_t end) {
-      for (int row = static_cast<int>(begin); row < static_cast<int>(end); ++row)
-        for (int column = 0; column < columns; ++column) visit(row, column);
-    });
+    const auto visit_row = [&](int row) {
+      for (int column = 0; column < columns; ++column) visit(row, column);
+    };
+    drawing_rows(rows, visit_row, 1);
   };
   for_rows([&](int row, int column) {
     float least = 2, most = -1;
@@ -133,12 +132,7 @@ void keep_mixed(const Plane& lit, const Plane& known, const PixelPoints& points,
                 Plane& high) {
   constexpr int kNeighbors = 2;
   const int width = points.width(), height = points.height();
-  const auto for_rows = [&](const auto& visit) {
-    drawing_for(static_cast<std::size_t>(height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-      for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) visit(y);
-    });
-  };
-  for_rows([&](int y) {
+  drawing_rows(height, [&](int y) {
     float *least = low.row(y), *most = high.row(y);
     std::fill_n(least, width, 2.0f);
     std::fill_n(most, width, -1.0f);
@@ -150,7 +144,7 @@ void keep_mixed(const Plane& lit, const Plane& known, const PixelPoints& points,
       }
     }
   });
-  for_rows([&](int y) {
+  drawing_rows(height, [&](int y) {
     std::vector<float> least(low.row(y), low.row(y) + width), most(high.row(y), high.row(y) + width);
     for (int v = std::max(y - kNeighbors, 0); v <= std::min(y + kNeighbors, height - 1); ++v) {
       for (int x = 0; x < width; ++x) least[x] = std::min(least[x], low.row(v)[x]);
@@ -238,39 +232,37 @@ void TracedLight::trace_lamp(const ReflectedLight& light, const Lamp& lamp, Plan
   known.fill(0);
   wanted.fill(1);
   const auto trace = [&](int first_ray, int last_ray) {
-    drawing_for(static_cast<std::size_t>(height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-      for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-        for (int x = 0; x < width; x += kLanes) {
-          const Lanes kinds = points.kinds(x, y), asked = Eigen::Map<const Lanes>(wanted.row(y) + x);
-          if (!(kinds * asked > 0).any()) continue;
-          const LampSample sample = sample_lamp(lamp, points.positions(x, y));
-          const Lanes3 normal = points.normals(x, y);
-          const Lanes side = dot(normal, sample.direction);
-          const Lanes least = (kinds == kFloorKind).select(Lanes::Zero(), Lanes::Constant(kMinShadowCosine));
-          Rays packet;
-          packet.wanted = mask(kinds * asked > 0 && sample.intensity > 0 && (kinds == kClothKind || side > least));
-          if ((packet.wanted == 0).all()) continue;
-          // Rays start at the smooth surface, on the side that faces the lamp. If they started at the flat triangle,
-          // neighbouring triangles would block them.
-          const Lanes facing = (side < 0).select(Lanes::Constant(-1), Lanes::Constant(1));
-          const Lanes3 positions = points.positions(x, y);
-          const Lanes lift = facing * (light.ray_start(positions) + (facing * points.rises(x, y)).max(0.0f));
-          packet.origin = positions + lift * normal;
-          if (lamp.is_spot()) packet.end.setOnes();
-          Lanes hits = Lanes::Zero();
-          for (int k = first_ray; k < last_ray; ++k) {
-            for (int lane = 0; lane < kLanes; ++lane)
-              packet.direction.set(lane, places[static_cast<std::size_t>(rotation_index(x + lane, y) * rays + k)]);
-            if (lamp.is_spot()) packet.direction = packet.direction + Lanes::Constant(-1) * packet.origin;
-            packet.seed = static_cast<unsigned>((k * height + y) * width + x);
-            hits += light.rays().blocked(packet);
-          }
-          Eigen::Map<Lanes> fractions(lit.row(y) + x), knowns(known.row(y) + x);
-          const Lanes before = (1 - fractions) * static_cast<float>(first_ray);
-          const auto traced = packet.wanted != 0;
-          fractions = traced.select(1 - (before + hits) / static_cast<float>(last_ray), fractions);
-          knowns = traced.select(Lanes::Ones(), knowns);
+    drawing_rows(height, [&](int y) {
+      for (int x = 0; x < width; x += kLanes) {
+        const Lanes kinds = points.kinds(x, y), asked = Eigen::Map<const Lanes>(wanted.row(y) + x);
+        if (!(kinds * asked > 0).any()) continue;
+        const LampSample sample = sample_lamp(lamp, points.positions(x, y));
+        const Lanes3 normal = points.normals(x, y);
+        const Lanes side = dot(normal, sample.direction);
+        const Lanes least = (kinds == kFloorKind).select(Lanes::Zero(), Lanes::Constant(kMinShadowCosine));
+        Rays packet;
+        packet.wanted = mask(kinds * asked > 0 && sample.intensity > 0 && (kinds == kClothKind || side > least));
+        if ((packet.wanted == 0).all()) continue;
+        // Rays start at the smooth surface, on the side that faces the lamp. If they started at the flat triangle,
+        // neighbouring triangles would block them.
+        const Lanes facing = (side < 0).select(Lanes::Constant(-1), Lanes::Constant(1));
+        const Lanes3 positions = points.positions(x, y);
+        const Lanes lift = facing * (light.ray_start(positions) + (facing * points.rises(x, y)).max(0.0f));
+        packet.origin = positions + lift * normal;
+        if (lamp.is_spot()) packet.end.setOnes();
+        Lanes hits = Lanes::Zero();
+        for (int k = first_ray; k < last_ray; ++k) {
+          for (int lane = 0; lane < kLanes; ++lane)
+            packet.direction.set(lane, places[static_cast<std::size_t>(rotation_index(x + lane, y) * rays + k)]);
+          if (lamp.is_spot()) packet.direction = packet.direction + Lanes::Constant(-1) * packet.origin;
+          packet.seed = static_cast<unsigned>((k * height + y) * width + x);
+          hits += light.rays().blocked(packet);
         }
+        Eigen::Map<Lanes> fractions(lit.row(y) + x), knowns(known.row(y) + x);
+        const Lanes before = (1 - fractions) * static_cast<float>(first_ray);
+        const auto traced = packet.wanted != 0;
+        fractions = traced.select(1 - (before + hits) / static_cast<float>(last_ray), fractions);
+        knowns = traced.select(Lanes::Ones(), knowns);
       }
     });
   };
@@ -288,38 +280,36 @@ void TracedLight::trace_surroundings(const ReflectedLight& light) {
   const PixelPoints& points = open_points_;
   const int rays = quality_.ambient_rays;
   const std::vector<Vector3f>& directions = directions_;
-  drawing_for(static_cast<std::size_t>(points.height()), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < points.width(); x += kLanes) {
-        Rays packet;
-        packet.wanted = mask(points.kinds(x, y) > 0);
-        Lanes open = Lanes::Zero();
-        Lanes3 sum;
-        if ((packet.wanted != 0).any()) {
-          const Lanes3 normal = points.normals(x, y);
-          Lanes3 first, second;
-          across<Lanes, Lanes3>(normal, first, second);
-          const Lanes3 positions = points.positions(x, y);
-          packet.origin = positions + (light.ray_start(positions) + points.rises(x, y).max(0.0f)) * normal;
-          for (int k = 0; k < rays; ++k) {
-            Lanes3 local;
-            for (int lane = 0; lane < kLanes; ++lane)
-              local.set(lane, directions[static_cast<std::size_t>(jitter_index(x + lane, y) * rays + k)]);
-            packet.direction = local.x * first + local.y * second + local.z * normal;
-            packet.seed = static_cast<unsigned>((k * points.height() + y) * points.width() + x);
-            const ReflectedLight::Arriving arriving = light.arriving(packet);
-            open += arriving.open;
-            sum = sum + arriving.light;
-          }
-        } else {
-          open.setConstant(static_cast<float>(rays));
+  drawing_rows(points.height(), [&](int y) {
+    for (int x = 0; x < points.width(); x += kLanes) {
+      Rays packet;
+      packet.wanted = mask(points.kinds(x, y) > 0);
+      Lanes open = Lanes::Zero();
+      Lanes3 sum;
+      if ((packet.wanted != 0).any()) {
+        const Lanes3 normal = points.normals(x, y);
+        Lanes3 first, second;
+        across<Lanes, Lanes3>(normal, first, second);
+        const Lanes3 positions = points.positions(x, y);
+        packet.origin = positions + (light.ray_start(positions) + points.rises(x, y).max(0.0f)) * normal;
+        for (int k = 0; k < rays; ++k) {
+          Lanes3 local;
+          for (int lane = 0; lane < kLanes; ++lane)
+            local.set(lane, directions[static_cast<std::size_t>(jitter_index(x + lane, y) * rays + k)]);
+          packet.direction = local.x * first + local.y * second + local.z * normal;
+          packet.seed = static_cast<unsigned>((k * points.height() + y) * points.width() + x);
+          const ReflectedLight::Arriving arriving = light.arriving(packet);
+          open += arriving.open;
+          sum = sum + arriving.light;
         }
-        const float each = 1 / static_cast<float>(rays);
-        Eigen::Map<Lanes>(open_[0].row(y) + x) = each * sum.x;
-        Eigen::Map<Lanes>(open_[1].row(y) + x) = each * sum.y;
-        Eigen::Map<Lanes>(open_[2].row(y) + x) = each * sum.z;
-        Eigen::Map<Lanes>(open_[3].row(y) + x) = each * open;
+      } else {
+        open.setConstant(static_cast<float>(rays));
       }
+      const float each = 1 / static_cast<float>(rays);
+      Eigen::Map<Lanes>(open_[0].row(y) + x) = each * sum.x;
+      Eigen::Map<Lanes>(open_[1].row(y) + x) = each * sum.y;
+      Eigen::Map<Lanes>(open_[2].row(y) + x) = each * sum.z;
+      Eigen::Map<Lanes>(open_[3].row(y) + x) = each * open;
     }
   });
   for (const int step : {1, 2, 4}) smooth(open_, open_scratch_, points, step);
@@ -331,40 +321,38 @@ void TracedLight::trace_mirrors(const ReflectedLight& light, std::span<const Sur
   const PixelPoints& points = open_points_;
   mirrored_.resize(4, Plane(points.width(), points.height(), 0));
   for (Plane& plane : mirrored_) plane.fill(0);
-  drawing_for(static_cast<std::size_t>(points.height()), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < points.width(); x += kLanes) {
-        Rays packet;
-        std::array<float, kLanes> alpha{};
+  drawing_rows(points.height(), [&](int y) {
+    for (int x = 0; x < points.width(); x += kLanes) {
+      Rays packet;
+      std::array<float, kLanes> alpha{};
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const int number = static_cast<int>(points.surfaces(y)[x + lane]) - kFirstSurface;
+        if (number < 0) continue;
+        alpha[lane] = surfaces[static_cast<std::size_t>(number)].mirror_alpha;
+        packet.wanted[lane] = alpha[lane] >= 0 ? -1 : 0;
+      }
+      if ((packet.wanted == 0).all()) continue;
+      const Lanes3 positions = points.positions(x, y);
+      packet.origin = positions + (light.ray_start(positions) + points.rises(x, y).max(0.0f)) * points.normals(x, y);
+      for (int k = 0; k < kMirrorRays; ++k) {
         for (int lane = 0; lane < kLanes; ++lane) {
-          const int number = static_cast<int>(points.surfaces(y)[x + lane]) - kFirstSurface;
-          if (number < 0) continue;
-          alpha[lane] = surfaces[static_cast<std::size_t>(number)].mirror_alpha;
-          packet.wanted[lane] = alpha[lane] >= 0 ? -1 : 0;
+          if (packet.wanted[lane] == 0) continue;
+          const Vector3f normal = points.normals(x, y).at(lane);
+          const Vector3f seen = (points.positions(x, y).at(lane) - eye).normalized();
+          const Vector3f mirrored = seen - 2 * normal.dot(seen) * normal;
+          Vector3f first, second;
+          across<float, Vector3f>(mirrored, first, second);
+          const Vector2f jitter = jitter_pair(jitter_index(x + lane, y));
+          const Vector2f at = alpha[lane] * on_disc(static_cast<float>(k), kMirrorRays, jitter.x(), jitter.y());
+          packet.direction.set(lane, (mirrored + at.x() * first + at.y() * second).normalized());
         }
-        if ((packet.wanted == 0).all()) continue;
-        const Lanes3 positions = points.positions(x, y);
-        packet.origin = positions + (light.ray_start(positions) + points.rises(x, y).max(0.0f)) * points.normals(x, y);
-        for (int k = 0; k < kMirrorRays; ++k) {
-          for (int lane = 0; lane < kLanes; ++lane) {
-            if (packet.wanted[lane] == 0) continue;
-            const Vector3f normal = points.normals(x, y).at(lane);
-            const Vector3f seen = (points.positions(x, y).at(lane) - eye).normalized();
-            const Vector3f mirrored = seen - 2 * normal.dot(seen) * normal;
-            Vector3f first, second;
-            across<float, Vector3f>(mirrored, first, second);
-            const Vector2f jitter = jitter_pair(jitter_index(x + lane, y));
-            const Vector2f at = alpha[lane] * on_disc(static_cast<float>(k), kMirrorRays, jitter.x(), jitter.y());
-            packet.direction.set(lane, (mirrored + at.x() * first + at.y() * second).normalized());
-          }
-          packet.seed = static_cast<unsigned>((k * points.height() + y) * points.width() + x);
-          const ReflectedLight::Arriving arriving = light.arriving(packet);
-          for (int lane = 0; lane < kLanes; ++lane) {
-            if (packet.wanted[lane] == 0) continue;
-            const Vector3f each = arriving.light.at(lane) / kMirrorRays;
-            for (int c = 0; c < 3; ++c) mirrored_[c].row(y)[x + lane] += each[c];
-            mirrored_[3].row(y)[x + lane] += (1 - arriving.open[lane]) / kMirrorRays;
-          }
+        packet.seed = static_cast<unsigned>((k * points.height() + y) * points.width() + x);
+        const ReflectedLight::Arriving arriving = light.arriving(packet);
+        for (int lane = 0; lane < kLanes; ++lane) {
+          if (packet.wanted[lane] == 0) continue;
+          const Vector3f each = arriving.light.at(lane) / kMirrorRays;
+          for (int c = 0; c < 3; ++c) mirrored_[c].row(y)[x + lane] += each[c];
+          mirrored_[3].row(y)[x + lane] += (1 - arriving.open[lane]) / kMirrorRays;
         }
       }
     }
