@@ -227,13 +227,17 @@ void check_size(const std::filesystem::path& file, const Rows& rows, std::size_t
   }
 }
 
-void encode(const std::filesystem::path& file, const Rows& rows, std::vector<png_text> texts, std::FILE* out) {
+// Writes a PNG to `out`, and closes it.
+void encode(const std::filesystem::path& file, const Rows& rows, std::vector<png_text> texts, File out) {
+  if (!out) fail_to_write(file, std::strerror(errno));
   ErrorText error_text;
   const Writer writer(&error_text);
   if (!writer.info) fail_to_write(file, "libpng could not start");
-  if (!write_all(writer, rows, out, texts.data(), static_cast<int>(texts.size()))) {
+  if (!write_all(writer, rows, out.get(), texts.data(), static_cast<int>(texts.size()))) {
     fail_to_write(file, error_text.text.data());
   }
+  // If the disk is full, fclose() may be the first call to fail, because it writes the last bytes.
+  if (std::fclose(out.release()) != 0) fail_to_write(file, std::strerror(errno));
 }
 
 void write(const std::filesystem::path& file, const Rows& rows, std::size_t bytes, const Metadata& metadata) {
@@ -241,11 +245,7 @@ void write(const std::filesystem::path& file, const Rows& rows, std::size_t byte
   std::vector<png_text> texts = text_chunks(file, metadata);
 
   TemporaryFile temporary(file);
-  File out(std::fopen(temporary.path().c_str(), "wbe"), std::fclose);
-  if (!out) fail_to_write(file, std::strerror(errno));
-  encode(file, rows, std::move(texts), out.get());
-  // If the disk is full, fclose() may be the first call to fail, because it writes the last bytes.
-  if (std::fclose(out.release()) != 0) fail_to_write(file, std::strerror(errno));
+  encode(file, rows, std::move(texts), File(std::fopen(temporary.path().c_str(), "wbe"), std::fclose));
   temporary.commit();
 }
 
@@ -270,10 +270,7 @@ std::string bytes_of(const Rows& rows, std::size_t bytes) {
   std::size_t size = 0;
   const auto free_buffer = [](char** text) { std::free(*text); };  // NOLINT: memory of open_memstream()
   const std::unique_ptr<char*, decltype(free_buffer)> owner(&buffer, free_buffer);  // must outlive the stream
-  File out(::open_memstream(&buffer, &size), std::fclose);
-  if (!out) fail_to_write(name, std::strerror(errno));
-  encode(name, rows, {}, out.get());
-  if (std::fclose(out.release()) != 0) fail_to_write(name, std::strerror(errno));
+  encode(name, rows, {}, File(::open_memstream(&buffer, &size), std::fclose));
   return {buffer, size};
 }
 
