@@ -5,7 +5,6 @@
 #include <weft/scene.hpp>
 
 #include "api/library/scene_data.hpp"
-#include "api/physics_library/data.hpp"
 #include "api/physics_library/material_members.hpp"
 #include "film/scene/fabrics.hpp"
 #include "film/scene/loader.hpp"

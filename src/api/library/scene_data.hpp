@@ -1,4 +1,4 @@
-// The private data of the public scene, for the library and the Python module.
+// The private data of the public scene and of its frames, for the library and the Python module.
 #pragma once
 
 #include <filesystem>
@@ -7,6 +7,8 @@
 #include <vector>
 #include <weft/scene.hpp>
 
+#include "api/physics_library/data.hpp"
+#include "film/frame/frame_snapshot.hpp"
 #include "film/scene/scene.hpp"
 
 namespace weft {
@@ -26,5 +28,8 @@ namespace weft::library {
 /// in messages. Throws SceneError.
 Scene scene_of(std::string_view text, const std::filesystem::path& name, const std::filesystem::path& shown,
                std::vector<std::vector<std::string>> changes);
+
+/// Returns data whose objects are views of the snapshot. The data own the snapshot.
+Frame::Data view(frame::SnapshotPtr snapshot);
 
 }  // namespace weft::library

@@ -11,7 +11,6 @@
 #include <weft/simulation.hpp>
 
 #include "api/library/scene_data.hpp"
-#include "api/library/scene_frame.hpp"
 
 namespace weft {
 namespace {

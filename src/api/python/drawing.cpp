@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "api/library/scene_data.hpp"
-#include "api/library/scene_frame.hpp"
 #include "api/python/bindings.hpp"
 #include "film/render/renderer.hpp"
 

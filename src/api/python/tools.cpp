@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "api/library/scene_data.hpp"
-#include "api/library/scene_frame.hpp"
 #include "api/python/bindings.hpp"
 #include "film/cache/reader.hpp"
 #include "film/run_error/companions.hpp"
