@@ -4,13 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "film/render/renderer.hpp"
+#include "render/scaled_pictures.hpp"
 #include "render/snapshots.hpp"
 
 namespace weft::render {
 namespace {
-
-constexpr int kPictureWidth = 320, kPictureHeight = 200;
 
 /// Floor as seen by a low eye, before anything stands on it.
 frame::FrameSnapshot wide_floor() {
@@ -24,16 +22,12 @@ frame::FrameSnapshot wide_floor() {
 
 /// Expects that wide_floor() has one colour up to the horizon and the backdrop another.
 void expect_horizon(const frame::FrameSnapshot& snapshot, Quality quality) {
-  Settings settings;
-  settings.width = kPictureWidth;
-  settings.height = kPictureHeight;
-  settings.quality = quality;
-  const image::Image image = Renderer(settings).draw(snapshot);
+  const image::Image image = drawn(snapshot, 2, quality);
   // Row of the horizon, counted from the top: above the middle by 0.005 / tan 15° of half the height.
-  const int horizon = static_cast<int>(kPictureHeight / 2 * (1 - 0.005 / std::tan(15 * std::numbers::pi / 180)));
-  for (int y = horizon + 3; y < kPictureHeight; ++y)
-    EXPECT_NEAR(image.pixel(160, y)[1], image.pixel(160, kPictureHeight - 1)[1], 1.5) << y;
-  EXPECT_GT(std::abs(image.pixel(160, horizon - 20)[1] - image.pixel(160, kPictureHeight - 1)[1]), 8);
+  const int horizon = static_cast<int>(image.height / 2 * (1 - 0.005 / std::tan(15 * std::numbers::pi / 180)));
+  for (int y = horizon + 3; y < image.height; ++y)
+    EXPECT_NEAR(image.pixel(160, y)[1], image.pixel(160, image.height - 1)[1], 1.5) << y;
+  EXPECT_GT(std::abs(image.pixel(160, horizon - 20)[1] - image.pixel(160, image.height - 1)[1]), 8);
 }
 
 // The surroundings are a thousand times as large as the height of the eye: the floor fades within the last pixel below

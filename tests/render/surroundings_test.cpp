@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "film/image/color.hpp"
-#include "film/render/renderer.hpp"
+#include "render/scaled_pictures.hpp"
 #include "render/snapshots.hpp"
 
 namespace weft::render {
@@ -78,12 +78,10 @@ std::vector<int> left_border(double height) {
   add_square(snapshot, frame::ObjectKind::cloth, Vec3(0, 0, height), Vec3::UnitZ(), Vec3::UnitX(), 0.5).run_bounds =
       Box3(Vec3(-0.5, -0.5, 0), Vec3(0.5, 0.5, 2));
   snapshot.cameras = {camera_at(Vec3(0, -8, 1.5), Vec3(0, 0, 0.8), 40)};
-  Settings settings;
-  settings.width = 640;  // [pixels]; open floor is interpolated over 16 pixels, too coarse for smaller pictures
-  settings.height = 400;
-  const image::Image image = Renderer(settings).draw(snapshot);
+  // Open floor is interpolated over 16 pixels, too coarse for smaller pictures.
+  const image::Image image = drawn(snapshot, 4);
   std::vector<int> bytes;
-  for (int y = 0; y < settings.height; ++y) bytes.push_back(image.pixel(0, y)[1]);
+  for (int y = 0; y < image.height; ++y) bytes.push_back(image.pixel(0, y)[1]);
   return bytes;
 }
 
@@ -136,10 +134,7 @@ image::Image wall(double height, bool shelf) {
   add(Vec3(0, -0.32, shelf ? 0.3 : 5e-4), Vec3::UnitZ(), shelf ? Vec3::Zero() : Vec3::Ones());
   snapshot.cameras = {camera_at(Vec3(0, -2.4, 0.22), Vec3(0, -0.3, 0), 10)};
   snapshot.lights = {sun(Vec3(0, 1, 0))};
-  Settings settings;
-  settings.width = 160;
-  settings.height = 100;
-  return Renderer(settings).draw(snapshot);
+  return drawn(snapshot, 1);
 }
 
 /// Light in the middle of the picture, which shows the floor 0.3 m in front of the wall; mean over 14 cm along the
@@ -210,11 +205,7 @@ double floor_before_a_lamp(double roughness, Quality quality) {
   lamp.position = 5 * Vec3(0, std::sin(angle), std::cos(angle));
   lamp.target = Vec3::Zero();
   snapshot.lights = {lamp};
-  Settings settings;
-  settings.width = 160;
-  settings.height = 100;
-  settings.quality = quality;
-  return light_on_floor(Renderer(settings).draw(snapshot)).x();
+  return light_on_floor(drawn(snapshot, 1, quality)).x();
 }
 
 // Expected: GGX facets with Smith masking (Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based

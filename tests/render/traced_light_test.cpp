@@ -11,6 +11,7 @@
 #include "film/render/joint_filter.hpp"
 #include "film/render/renderer.hpp"
 #include "film/render/shading.hpp"
+#include "render/scaled_pictures.hpp"
 #include "render/snapshots.hpp"
 
 namespace weft::render {
@@ -464,10 +465,7 @@ TEST(TracedLight, SheetFarFromTheOriginDoesNotShadeItself) {
     add_square(snapshot, frame::ObjectKind::cloth, place, normal, along, 0.3).appearance.color = Vec3(0.6, 0.6, 0.6);
     snapshot.cameras = {camera_at(place - 2 * Vec3::UnitY(), place, 40)};
     snapshot.lights = {sun(-0.3 * normal + 0.95 * along)};
-    Settings settings;
-    settings.width = 320;
-    settings.height = 200;
-    return Renderer(settings).draw(snapshot);
+    return drawn(snapshot, 2);
   };
   const image::Image near = draw(Vec3::Zero()), far = draw(Vec3(4321.1, -4567.3, 5432.7));
   int largest = 0;
