@@ -45,7 +45,7 @@ const Surfaces& Reader::shared_surfaces() const {
   std::error_code ignored;
   if (!fs::exists(file, ignored)) throw Error(ExitCode::asset_unreadable, "{}: holds no frame yet", folder_.string());
   surfaces_ = read_checked(file, [&] {
-    Surfaces surfaces = decode_surfaces(read_part(kSurfacesFile, Kind::surfaces, 0));
+    Surfaces surfaces = decode_surfaces(read_part(kSurfacesFile, Kind::surfaces, 0).payload);
     check_objects(surfaces);
     return surfaces;
   });
@@ -76,15 +76,14 @@ void Reader::check_scene(std::uint64_t hash) const {
         "it has the look from before the scene was changed; weft simulate --resume continues the cache");
 }
 
-std::string Reader::read_part(const char* name, Kind kind, std::optional<int> frame, Label* label) const {
+Content Reader::read_part(const char* name, Kind kind, std::optional<int> frame) const {
   const fs::path file = folder_ / name;
   return read_checked(file, [&] {
     Content content = unpack(read_container(file));
     check_scene(content.label.scene_hash);
     if (content.label.kind != kind || (frame && content.label.frame != *frame))
       throw std::runtime_error("it is another file of the cache under this name");
-    if (label != nullptr) *label = content.label;
-    return std::move(content.payload);
+    return content;
   });
 }
 
@@ -118,10 +117,9 @@ bool Reader::has(int frame) const {
 CachedFrame Reader::read(int frame) const {
   const std::string name = frame_file(frame);
   const Surfaces& shared = shared_surfaces();
-  Label label;
-  const std::string payload = read_part(name.c_str(), Kind::frame, frame, &label);
-  CachedFrame cached = read_checked(folder_ / name, [&] { return decode_frame(payload, frame, shared); });
-  cached.scene_hash = label.scene_hash;
+  const Content content = read_part(name.c_str(), Kind::frame, frame);
+  CachedFrame cached = read_checked(folder_ / name, [&] { return decode_frame(content.payload, frame, shared); });
+  cached.scene_hash = content.label.scene_hash;
   return cached;
 }
 
@@ -139,9 +137,8 @@ std::uint64_t Reader::verify(int frame) const {
 std::optional<SolverState> Reader::state() const {
   std::error_code ignored;
   if (!fs::exists(folder_ / kStateFile, ignored)) return std::nullopt;
-  Label label;
-  std::string bytes = read_part(kStateFile, Kind::state, std::nullopt, &label);
-  return SolverState{label.frame, std::move(bytes)};
+  Content content = read_part(kStateFile, Kind::state, std::nullopt);
+  return SolverState{content.label.frame, std::move(content.payload)};
 }
 
 }  // namespace weft::cache

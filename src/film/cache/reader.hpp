@@ -51,7 +51,7 @@ class Reader {
   std::optional<SolverState> state() const;
 
  private:
-  std::string read_part(const char* name, Kind kind, std::optional<int> frame, Label* label = nullptr) const;
+  Content read_part(const char* name, Kind kind, std::optional<int> frame) const;
   const Surfaces& shared_surfaces() const;
   void check_objects(const Surfaces& surfaces) const;
   void check_scene(std::uint64_t hash) const;
