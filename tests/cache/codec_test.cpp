@@ -27,67 +27,56 @@ T value_at(std::string_view bytes, std::size_t offset) {
   return value;
 }
 
+/// Expects that two structs have equal values of these members.
+template <class Struct, class... Members>
+void expect_same(const Struct& a, const Struct& b, Members... members) {
+  int number = 0;
+  const auto compare = [&](const auto& member) {
+    ++number;
+    EXPECT_EQ(a.*member, b.*member) << "member " << number;
+  };
+  (compare(members), ...);
+}
+
 void expect_same_paint(const frame::Appearance& a, const frame::Appearance& b) {
-  EXPECT_EQ(a.thickness, b.thickness);
-  EXPECT_EQ(a.hem, b.hem);
-  EXPECT_EQ(a.back_painted, b.back_painted);
-  EXPECT_EQ(a.back_paleness, b.back_paleness);
+  using frame::Appearance, frame::Texture, frame::Paint;
+  expect_same(a, b, &Appearance::thickness, &Appearance::hem, &Appearance::back_painted, &Appearance::back_paleness);
   ASSERT_EQ(a.paint.texture == nullptr, b.paint.texture == nullptr);
   if (!a.paint.texture) return;
-  EXPECT_EQ(a.paint.texture->width, b.paint.texture->width);
-  EXPECT_EQ(a.paint.texture->height, b.paint.texture->height);
-  EXPECT_EQ(a.paint.texture->rgba, b.paint.texture->rgba);
-  EXPECT_EQ(a.paint.texture_from_uv, b.paint.texture_from_uv);
-  EXPECT_EQ(a.paint.wrap_u, b.paint.wrap_u);
-  EXPECT_EQ(a.paint.wrap_v, b.paint.wrap_v);
-  EXPECT_EQ(a.paint.alpha, b.paint.alpha);
+  expect_same(*a.paint.texture, *b.paint.texture, &Texture::width, &Texture::height, &Texture::rgba);
+  expect_same(a.paint, b.paint, &Paint::texture_from_uv, &Paint::wrap_u, &Paint::wrap_v, &Paint::alpha);
 }
 
 TEST(Codec, SurfacesComeBackAsTheyWere) {
+  using frame::Stage, frame::Surface, frame::Appearance;
   const Sample sample;
   const Surfaces read = decode_surfaces(encode_surfaces(surfaces_of(*sample.snapshot(0))));
-  EXPECT_EQ(read.stage->up, sample.stage->up);
-  EXPECT_EQ(read.stage->sky_color, sample.stage->sky_color);
-  EXPECT_EQ(read.stage->ground_color, sample.stage->ground_color);
-  EXPECT_EQ(read.stage->sky_intensity, sample.stage->sky_intensity);
-  EXPECT_EQ(read.stage->heat, sample.stage->heat);
-  EXPECT_EQ(read.stage->heat_max, sample.stage->heat_max);
+  expect_same(*read.stage, *sample.stage, &Stage::up, &Stage::sky_color, &Stage::ground_color, &Stage::sky_intensity,
+              &Stage::heat, &Stage::heat_max);
   ASSERT_EQ(read.surfaces.size(), 2u);
   for (std::size_t s = 0; s < 2; ++s) {
-    const frame::Surface &a = *sample.surfaces[s], &b = *read.surfaces[s];
-    EXPECT_EQ(a.name, b.name);
-    EXPECT_EQ(a.kind, b.kind);
-    EXPECT_EQ(a.visible, b.visible);
-    EXPECT_EQ(a.infinite_floor, b.infinite_floor);
-    EXPECT_EQ(a.triangles, b.triangles);
-    EXPECT_EQ(a.quads, b.quads);
-    EXPECT_EQ(a.uv, b.uv);
-    EXPECT_EQ(a.crease_angle, b.crease_angle);
+    const Surface &a = *sample.surfaces[s], &b = *read.surfaces[s];
+    expect_same(a, b, &Surface::name, &Surface::kind, &Surface::visible, &Surface::infinite_floor, &Surface::triangles,
+                &Surface::quads, &Surface::uv, &Surface::crease_angle, &Surface::passed_through,
+                &Surface::part_of_triangle, &Surface::paint_uv, &Surface::closures, &Surface::max_closed_gap);
     const auto corners = [](const std::optional<Box3>& box) {
       return box ? std::vector<Vec3>{box->min(), box->max()} : std::vector<Vec3>{};
     };
     EXPECT_EQ(corners(a.run_bounds), corners(b.run_bounds));
-    EXPECT_EQ(a.appearance.color, b.appearance.color);
-    EXPECT_EQ(a.appearance.back_color, b.appearance.back_color);
-    EXPECT_EQ(a.appearance.roughness, b.appearance.roughness);
-    EXPECT_EQ(a.appearance.thread_spacing, b.appearance.thread_spacing);
+    expect_same(a.appearance, b.appearance, &Appearance::color, &Appearance::back_color, &Appearance::roughness,
+                &Appearance::thread_spacing, &Appearance::checker);
     EXPECT_EQ(a.appearance.finish.threads, b.appearance.finish.threads);
-    EXPECT_EQ(a.appearance.checker, b.appearance.checker);
     expect_same_paint(a.appearance, b.appearance);
     ASSERT_EQ(a.parts.size(), b.parts.size());
     for (std::size_t p = 0; p < a.parts.size(); ++p) {
       EXPECT_EQ(a.parts[p].name, b.parts[p].name);
       expect_same_paint(a.parts[p].appearance, b.parts[p].appearance);
     }
-    EXPECT_EQ(a.passed_through, b.passed_through);
-    EXPECT_EQ(a.part_of_triangle, b.part_of_triangle);
-    EXPECT_EQ(a.paint_uv, b.paint_uv);
-    EXPECT_EQ(a.closures, b.closures);
-    EXPECT_EQ(a.max_closed_gap, b.max_closed_gap);
   }
 }
 
 TEST(Codec, FramesComeBackBitForBit) {
+  using frame::Camera, frame::Light, simulation::FrameReport;
   const Sample sample;
   const Surfaces surfaces = surfaces_of(*sample.snapshot(0));
   for (const int k : {0, 1, 2}) {
@@ -102,49 +91,23 @@ TEST(Codec, FramesComeBackBitForBit) {
       EXPECT_TRUE(same_bits(a->states[s].heat, b.states[s].heat)) << s;
     }
     ASSERT_EQ(b.cameras.size(), 2u);
-    EXPECT_EQ(a->cameras[0].name, b.cameras[0].name);
-    EXPECT_EQ(a->cameras[0].position, b.cameras[0].position);
-    EXPECT_EQ(a->cameras[0].target, b.cameras[0].target);
-    EXPECT_EQ(a->cameras[0].field_of_view, b.cameras[0].field_of_view);
-    EXPECT_EQ(a->cameras[0].kind, b.cameras[0].kind);
-    EXPECT_EQ(a->cameras[0].subjects, b.cameras[0].subjects);
-    EXPECT_EQ(a->cameras[0].azimuth, b.cameras[0].azimuth);
-    EXPECT_EQ(a->cameras[0].elevation, b.cameras[0].elevation);
-    EXPECT_EQ(a->cameras[0].margin, b.cameras[0].margin);
-    EXPECT_EQ(a->cameras[0].smoothing, b.cameras[0].smoothing);
-    EXPECT_EQ(a->cameras[0].shot, b.cameras[0].shot);
+    expect_same(a->cameras[0], b.cameras[0], &Camera::name, &Camera::position, &Camera::target, &Camera::field_of_view,
+                &Camera::kind, &Camera::subjects, &Camera::azimuth, &Camera::elevation, &Camera::margin,
+                &Camera::smoothing, &Camera::shot);
     ASSERT_EQ(b.lights.size(), 1u);
-    EXPECT_EQ(a->lights[0].name, b.lights[0].name);
-    EXPECT_EQ(a->lights[0].kind, b.lights[0].kind);
-    EXPECT_EQ(a->lights[0].direction, b.lights[0].direction);
-    EXPECT_EQ(a->lights[0].position, b.lights[0].position);
-    EXPECT_EQ(a->lights[0].target, b.lights[0].target);
-    EXPECT_EQ(a->lights[0].cone_angle, b.lights[0].cone_angle);
-    EXPECT_EQ(a->lights[0].color, b.lights[0].color);
-    EXPECT_EQ(a->lights[0].intensity, b.lights[0].intensity);
-    EXPECT_EQ(a->lights[0].softness, b.lights[0].softness);
-    const simulation::FrameReport &before = sample.report(k), &after = cached.report;
-    EXPECT_EQ(before.frame, after.frame);
-    EXPECT_EQ(before.time, after.time);
-    for (const auto stage :
-         {&simulation::FrameReport::simulate, &simulation::FrameReport::collide, &simulation::FrameReport::forces,
-          &simulation::FrameReport::preconditioner, &simulation::FrameReport::linear}) {
-      EXPECT_EQ((before.*stage).wall_s, (after.*stage).wall_s);
-      EXPECT_EQ((before.*stage).cpu_s, (after.*stage).cpu_s);
-    }
-    for (const auto number : {&simulation::FrameReport::error_estimate, &simulation::FrameReport::solver_error,
-                              &simulation::FrameReport::min_distance, &simulation::FrameReport::max_strain,
-                              &simulation::FrameReport::stretch_ratio, &simulation::FrameReport::kinetic_energy,
-                              &simulation::FrameReport::potential_energy, &simulation::FrameReport::elastic_energy,
-                              &simulation::FrameReport::pin_work, &simulation::FrameReport::solver_work})
-      EXPECT_EQ(before.*number, after.*number);
-    for (const auto number : {&simulation::FrameReport::steps, &simulation::FrameReport::rejected_steps,
-                              &simulation::FrameReport::inexact_steps, &simulation::FrameReport::newton_iterations,
-                              &simulation::FrameReport::linear_iterations, &simulation::FrameReport::proximities,
-                              &simulation::FrameReport::constraints, &simulation::FrameReport::pinched_pairs,
-                              &simulation::FrameReport::lagging_particles})
-      EXPECT_EQ(before.*number, after.*number);
-    EXPECT_EQ(before.warnings, after.warnings);
+    expect_same(a->lights[0], b.lights[0], &Light::name, &Light::kind, &Light::direction, &Light::position,
+                &Light::target, &Light::cone_angle, &Light::color, &Light::intensity, &Light::softness);
+    const FrameReport &before = sample.report(k), &after = cached.report;
+    for (const auto stage : {&FrameReport::simulate, &FrameReport::collide, &FrameReport::forces,
+                             &FrameReport::preconditioner, &FrameReport::linear})
+      expect_same(before.*stage, after.*stage, &StageTime::wall_s, &StageTime::cpu_s);
+    expect_same(before, after, &FrameReport::frame, &FrameReport::time, &FrameReport::error_estimate,
+                &FrameReport::solver_error, &FrameReport::min_distance, &FrameReport::max_strain,
+                &FrameReport::stretch_ratio, &FrameReport::kinetic_energy, &FrameReport::potential_energy,
+                &FrameReport::elastic_energy, &FrameReport::pin_work, &FrameReport::solver_work, &FrameReport::steps,
+                &FrameReport::rejected_steps, &FrameReport::inexact_steps, &FrameReport::newton_iterations,
+                &FrameReport::linear_iterations, &FrameReport::proximities, &FrameReport::constraints,
+                &FrameReport::pinched_pairs, &FrameReport::lagging_particles, &FrameReport::warnings);
   }
 }
 
