@@ -453,7 +453,7 @@ TEST(Picture, TimesAreThoseOfDrawingAlone) {
   const double whole = process_cpu_seconds() - whole_before, others = burnt - burnt_before;
   stop = true;
   beside.join();
-  EXPECT_NEAR(renderer.last_times().cpu_seconds, whole - others, 0.2 * (whole - others) + 2e-3) << others;
+  EXPECT_NEAR(renderer.last_time().cpu_s, whole - others, 0.2 * (whole - others) + 2e-3) << others;
 }
 
 TEST(Picture, OneByOnePixelIsAPicture) {

@@ -71,7 +71,7 @@ struct Renderer::Impl {
   const Gl& gl;
   std::optional<CameraPath> path;
   frame::Cords cords;
-  DrawTimes times;
+  StageTime time;
 
   // GL objects; the context must be current when they are created and deleted.
   struct Passes {
@@ -467,7 +467,7 @@ image::Image Renderer::draw(const frame::FrameSnapshot& snapshot, const frame::F
   }
   image::Image image = to_image(impl_->rgba, impl_->settings.width, impl_->settings.height);
   check_errors(impl_->gl, "drawing");
-  impl_->times = {wall.seconds(), cpu.cpu_seconds()};
+  impl_->time = {wall.seconds(), cpu.cpu_seconds()};
   return image;
 }
 
@@ -479,8 +479,8 @@ image::Image16 Renderer::image16() {
   return to_image16(impl_->rgba, impl_->settings.width, impl_->settings.height);
 }
 
-DrawTimes Renderer::last_times() const {
-  return impl_->times;
+StageTime Renderer::last_time() const {
+  return impl_->time;
 }
 
 std::string Renderer::description() const {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "core/timer.hpp"
 #include "film/frame/frame_snapshot.hpp"
 #include "film/image/exr.hpp"
 #include "film/image/image.hpp"
@@ -30,11 +31,6 @@ struct Settings {
   double aspect() const { return static_cast<double>(width) / height; }
 };
 
-/// Time that one picture took. The CPU time excludes other work of the process.
-struct DrawTimes {
-  double wall_seconds = 0, cpu_seconds = 0;
-};
-
 /// Owns an OpenGL context, and the OpenGL data that do not change during a run. Only one thread may use a renderer.
 class Renderer {
  public:
@@ -58,7 +54,8 @@ class Renderer {
   image::Layers layers();
   /// The last picture with 16 bits per channel, without dithering.
   image::Image16 image16();
-  DrawTimes last_times() const;
+  /// Time that the last picture took. The CPU time excludes other work of the process.
+  StageTime last_time() const;
 
   /// See Context::description().
   std::string description() const;

@@ -125,7 +125,7 @@ void draw_test_picture(const DoctorOptions& options, image::Image& image, Examin
     if (std::equal(middle, middle + 3, corner)) {
       throw Error(ExitCode::internal, "a white square before the camera cannot be told from the background");
     }
-    return fmt::format("a picture of {}x{} in {:.0f} ms", kWidth, kHeight, 1e3 * renderer->last_times().wall_seconds);
+    return fmt::format("a picture of {}x{} in {:.0f} ms", kWidth, kHeight, 1e3 * renderer->last_time().wall_s);
   });
 }
 

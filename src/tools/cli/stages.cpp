@@ -40,10 +40,7 @@ class GlPainter : public FramePainter {
     return picture;
   }
 
-  StageTime last_time() const override {
-    const render::DrawTimes times = renderer_.last_times();
-    return {times.wall_seconds, times.cpu_seconds};
-  }
+  StageTime last_time() const override { return renderer_.last_time(); }
 
   std::string description() const override { return renderer_.description(); }
 
