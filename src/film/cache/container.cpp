@@ -18,7 +18,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little && sizeof(std::size_t) == 8,
               "plain values are written as they are in memory");
 
-constexpr std::size_t kCheckedSize = 48, kHeaderSize = 56;  // [bytes]; container.hpp has the layout
+constexpr std::size_t kCheckedSize = 48, kHeaderSize = 56;  // [bytes]; README.md has the layout
 // Compression level of Zstandard. The last mantissa bits of positions do not compress at any level; levels from 3 on
 // take longer and give no smaller files.
 constexpr int kLevel = 1;

@@ -1,16 +1,5 @@
-// Container format of all binary files of a frame cache. Little endian:
-//
-//   offset  size  content
-//        0     8  89 57 45 46 54 0D 0A 1A ("\x89WEFT\r\n\x1A": reveals line-end conversions)
-//        8     4  format version, kFormatVersion
-//       12     4  kind: 1 surfaces, 2 frame, 3 state
-//       16     4  frame number, signed (0 for surfaces; negative for the state of a preroll)
-//       20     4  reserved, 0
-//       24     8  scene hash
-//       32     8  size of the payload
-//       40     8  size of the payload as stored
-//       48     8  XXH3 (64 bits) of bytes 0 to 47 and of the stored payload
-//       56     -  the payload, one frame of Zstandard (RFC 8878)
+// Container format of all binary files of a frame cache; README.md has its layout. The first bytes reveal that a
+// program has converted line ends.
 #pragma once
 
 #include <cstdint>
