@@ -2,21 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <string_view>
-
-#include "core/error.hpp"
+#include "support/test_folder.hpp"
 
 namespace weft::render {
 namespace {
 
 TEST(SharedLibraries, ThatAreMissingAreAUsageError) {
-  try {
-    const SharedLibrary library("libweft_nowhere.so.1");
-    FAIL() << "it was opened";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::usage);
-    EXPECT_TRUE(std::string_view(error.what()).starts_with("libweft_nowhere.so.1: cannot be opened")) << error.what();
-  }
+  support::expect_error(ExitCode::usage, "libweft_nowhere.so.1: cannot be opened",
+                        [] { SharedLibrary library("libweft_nowhere.so.1"); });
 }
 
 }  // namespace

@@ -54,23 +54,16 @@ class EglContext : public Context {
   }
 
   SharedLibrary library_{kEgl};
-  using GetPlatformDisplay = EglHandle (*)(EglEnum, void*, const std::intptr_t*);
-  using Initialize = EglBoolean (*)(EglHandle, EglInt*, EglInt*);
-  using BindApi = EglBoolean (*)(EglEnum);
-  using ChooseConfig = EglBoolean (*)(EglHandle, const EglInt*, EglHandle*, EglInt, EglInt*);
-  using CreateContext = EglHandle (*)(EglHandle, EglHandle, EglHandle, const EglInt*);
-  using DestroyContext = EglBoolean (*)(EglHandle, EglHandle);
-  using MakeCurrent = EglBoolean (*)(EglHandle, EglHandle, EglHandle, EglHandle);
-  using GetError = EglInt (*)();
-  GetPlatformDisplay get_platform_display_ = library_.function<GetPlatformDisplay>("eglGetPlatformDisplay");
-  Initialize initialize_ = library_.function<Initialize>("eglInitialize");
-  BindApi bind_api_ = library_.function<BindApi>("eglBindAPI");
-  ChooseConfig choose_config_ = library_.function<ChooseConfig>("eglChooseConfig");
-  CreateContext create_context_ = library_.function<CreateContext>("eglCreateContext");
-  DestroyContext destroy_context_ = library_.function<DestroyContext>("eglDestroyContext");
-  MakeCurrent make_current_ = library_.function<MakeCurrent>("eglMakeCurrent");
-  GetError get_error_ = library_.function<GetError>("eglGetError");
-  Loader get_proc_ = library_.function<Loader>("eglGetProcAddress");
+  EglHandle (*get_platform_display_)(EglEnum, void*, const std::intptr_t*) = library_.function("eglGetPlatformDisplay");
+  EglBoolean (*initialize_)(EglHandle, EglInt*, EglInt*) = library_.function("eglInitialize");
+  EglBoolean (*bind_api_)(EglEnum) = library_.function("eglBindAPI");
+  EglBoolean (*choose_config_)(EglHandle, const EglInt*, EglHandle*, EglInt,
+                               EglInt*) = library_.function("eglChooseConfig");
+  EglHandle (*create_context_)(EglHandle, EglHandle, EglHandle, const EglInt*) = library_.function("eglCreateContext");
+  EglBoolean (*destroy_context_)(EglHandle, EglHandle) = library_.function("eglDestroyContext");
+  EglBoolean (*make_current_)(EglHandle, EglHandle, EglHandle, EglHandle) = library_.function("eglMakeCurrent");
+  EglInt (*get_error_)() = library_.function("eglGetError");
+  Loader get_proc_ = library_.function("eglGetProcAddress");
   EglHandle display_ = nullptr, context_ = nullptr;
 };
 

@@ -54,13 +54,10 @@ class OsmesaContext : public Context {
   std::array<std::uint8_t, kSide * kSide * 4> pixels_{};
 
   SharedLibrary library_{kOsMesa};
-  using CreateContext = OsmesaHandle (*)(const int*, OsmesaHandle);
-  using DestroyContext = void (*)(OsmesaHandle);
-  using MakeCurrent = GLboolean (*)(OsmesaHandle, void*, GLenum, GLsizei, GLsizei);
-  CreateContext create_ = library_.function<CreateContext>("OSMesaCreateContextAttribs");
-  DestroyContext destroy_ = library_.function<DestroyContext>("OSMesaDestroyContext");
-  MakeCurrent make_current_ = library_.function<MakeCurrent>("OSMesaMakeCurrent");
-  Loader get_proc_ = library_.function<Loader>("OSMesaGetProcAddress");
+  OsmesaHandle (*create_)(const int*, OsmesaHandle) = library_.function("OSMesaCreateContextAttribs");
+  void (*destroy_)(OsmesaHandle) = library_.function("OSMesaDestroyContext");
+  GLboolean (*make_current_)(OsmesaHandle, void*, GLenum, GLsizei, GLsizei) = library_.function("OSMesaMakeCurrent");
+  Loader get_proc_ = library_.function("OSMesaGetProcAddress");
   OsmesaHandle context_ = nullptr;
 };
 

@@ -11,10 +11,10 @@ SharedLibrary::SharedLibrary(const std::string& file)
   if (!handle_) throw Error(ExitCode::usage, "{}: cannot be opened: {}", file, dlerror());
 }
 
-void* SharedLibrary::address(const char* name) const {
+SharedLibrary::Function SharedLibrary::function(const char* name) const {
   void* symbol = dlsym(handle_, name);
   if (!symbol) throw Error(ExitCode::usage, "{}: has no function {}", file_, name);
-  return symbol;
+  return {symbol};
 }
 
 }  // namespace weft::render

@@ -11,15 +11,18 @@ class SharedLibrary {
   /// Throws Error(usage) with the dynamic loader's message if the library cannot be opened.
   explicit SharedLibrary(const std::string& file);
 
-  /// Address of a function; throws Error(usage) if the library lacks it.
-  template <class Function>
-  Function function(const char* name) const {
-    return reinterpret_cast<Function>(address(name));
-  }
+  /// Converts to a pointer to a function of any type.
+  struct Function {
+    void* address;
+    template <class Type>
+    operator Type*() const {
+      return reinterpret_cast<Type*>(address);
+    }
+  };
+  /// Throws Error(usage) if the library lacks the function.
+  Function function(const char* name) const;
 
  private:
-  void* address(const char* name) const;
-
   std::string file_;
   void* handle_ = nullptr;
 };
