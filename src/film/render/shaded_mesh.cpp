@@ -20,44 +20,6 @@ Vec3 unit_or_up(const Vec3& sum) {
   return length > 0 ? Vec3(sum / length) : Vec3::UnitZ();
 }
 
-/// Adds the drawn vertices of one surface vertex: one for each distinct normal among its corners.
-class VertexSplitter {
- public:
-  VertexSplitter(ShadedMesh& mesh, std::span<const Vec3> areas, double cos_crease)
-      : mesh_(mesh), areas_(areas), cos_crease_(cos_crease) {}
-
-  void split(Index vertex, std::span<const std::int32_t> corners) {
-    const std::size_t first = mesh_.normals.size();
-    for (const std::int32_t corner : corners) {
-      const Vec3 normal = corner_normal(corner, corners);
-      // Corners whose normals are means over the same triangles have bitwise equal normals, because the order of
-      // addition is the same.
-      std::size_t drawn = first;
-      while (drawn < mesh_.normals.size() && mesh_.normals[drawn] != normal) ++drawn;
-      if (drawn == mesh_.normals.size()) {
-        mesh_.source.push_back(vertex);
-        mesh_.normals.push_back(normal);
-      }
-      mesh_.triangles[corner / 3][corner % 3] = static_cast<Index>(drawn);
-    }
-  }
-
- private:
-  Vec3 corner_normal(std::int32_t corner, std::span<const std::int32_t> corners) const {
-    const Vec3& own = areas_[corner / 3];
-    Vec3 sum = Vec3::Zero();
-    for (const std::int32_t other : corners) {
-      const Vec3& area = areas_[other / 3];
-      if (other == corner || own.dot(area) > cos_crease_ * own.norm() * area.norm()) sum += area;
-    }
-    return unit_or_up(sum);
-  }
-
-  ShadedMesh& mesh_;
-  std::span<const Vec3> areas_;
-  double cos_crease_;
-};
-
 }  // namespace
 
 CornerMap::CornerMap(std::span<const Triangle> triangles, std::size_t vertex_count)
@@ -114,8 +76,29 @@ ShadedMesh make_shaded_mesh(std::span<const Triangle> triangles, const CornerMap
     return mesh;
   }
   mesh.triangles.resize(triangles.size());
-  VertexSplitter splitter(mesh, areas, std::cos((crease_angle + kCreaseMargin) * std::numbers::pi / 180));
-  for (std::size_t v = 0; v < positions.size(); ++v) splitter.split(static_cast<Index>(v), corners.corners(v));
+  const double cos_crease = std::cos((crease_angle + kCreaseMargin) * std::numbers::pi / 180);
+  // A vertex becomes one drawn vertex for each distinct normal among its corners.
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    const std::size_t first = mesh.normals.size();
+    for (const std::int32_t corner : corners.corners(v)) {
+      const Vec3& own = areas[corner / 3];
+      Vec3 sum = Vec3::Zero();
+      for (const std::int32_t other : corners.corners(v)) {
+        const Vec3& area = areas[other / 3];
+        if (other == corner || own.dot(area) > cos_crease * own.norm() * area.norm()) sum += area;
+      }
+      const Vec3 normal = unit_or_up(sum);
+      // Corners whose normals are means over the same triangles have bitwise equal normals, because the order of
+      // addition is the same.
+      std::size_t drawn = first;
+      while (drawn < mesh.normals.size() && mesh.normals[drawn] != normal) ++drawn;
+      if (drawn == mesh.normals.size()) {
+        mesh.source.push_back(static_cast<Index>(v));
+        mesh.normals.push_back(normal);
+      }
+      mesh.triangles[corner / 3][corner % 3] = static_cast<Index>(drawn);
+    }
+  }
   return mesh;
 }
 
