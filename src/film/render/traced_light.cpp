@@ -45,16 +45,12 @@ Vector2f on_disc(float k, int n, float turn, float along) {
 }
 
 /// Two unit vectors orthogonal to a unit vector (Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
-template <class Number, class Vector>
-void across(const Vector& n, Vector& first, Vector& second);
-template <>
-void across<float, Vector3f>(const Vector3f& n, Vector3f& first, Vector3f& second) {
+void across(const Vector3f& n, Vector3f& first, Vector3f& second) {
   const float sign = std::copysign(1.0f, n.z()), a = -1 / (sign + n.z()), b = n.x() * n.y() * a;
   first = {1 + sign * n.x() * n.x() * a, sign * b, -sign * n.x()};
   second = {b, sign + n.y() * n.y() * a, -n.y()};
 }
-template <>
-void across<Lanes, Lanes3>(const Lanes3& n, Lanes3& first, Lanes3& second) {
+void across(const Lanes3& n, Lanes3& first, Lanes3& second) {
   const Lanes sign = (n.z < 0).select(Lanes::Constant(-1), Lanes::Constant(1));
   const Lanes a = -1 / (sign + n.z), b = n.x * n.y * a;
   first = {1 + sign * n.x * n.x * a, sign * b, -sign * n.x};
@@ -216,7 +212,7 @@ void TracedLight::trace_lamp(const ReflectedLight& light, const Lamp& lamp, Plan
   const Vector3f center = lamp.is_spot() ? Vector3f(lamp.packed.position.head<3>()) : axis;
   const float radius = lamp.source_tangent * (lamp.is_spot() ? lamp.target_distance() : 1);
   Vector3f first, second;
-  across<float, Vector3f>(axis, first, second);
+  across(axis, first, second);
   std::vector<Vector3f> places;
   for (int turn = 0; turn < kRotations; ++turn) {
     for (int k = 0; k < rays; ++k) {
@@ -289,7 +285,7 @@ void TracedLight::trace_surroundings(const ReflectedLight& light) {
       if ((packet.wanted != 0).any()) {
         const Lanes3 normal = points.normals(x, y);
         Lanes3 first, second;
-        across<Lanes, Lanes3>(normal, first, second);
+        across(normal, first, second);
         const Lanes3 positions = points.positions(x, y);
         packet.origin = positions + (light.ray_start(positions) + points.rises(x, y).max(0.0f)) * normal;
         for (int k = 0; k < rays; ++k) {
@@ -341,7 +337,7 @@ void TracedLight::trace_mirrors(const ReflectedLight& light, std::span<const Sur
           const Vector3f seen = (points.positions(x, y).at(lane) - eye).normalized();
           const Vector3f mirrored = seen - 2 * normal.dot(seen) * normal;
           Vector3f first, second;
-          across<float, Vector3f>(mirrored, first, second);
+          across(mirrored, first, second);
           const Vector2f jitter = jitter_pair(jitter_index(x + lane, y));
           const Vector2f at = alpha[lane] * on_disc(static_cast<float>(k), kMirrorRays, jitter.x(), jitter.y());
           packet.direction.set(lane, (mirrored + at.x() * first + at.y() * second).normalized());
