@@ -27,8 +27,7 @@ Settings small_settings() {
 /// A white square of 0.2 m in front of black, by default 2 m from the camera, where a pixel is 7.1 mm wide.
 frame::FrameSnapshot square_at(double x, double distance = 2) {
   frame::FrameSnapshot snapshot;
-  snapshot.stage = stage_without_sky();
-  auto stage = std::make_shared<frame::Stage>(*snapshot.stage);
+  auto stage = stage_without_sky();
   stage->sky_color = Vec3::Zero();
   snapshot.stage = stage;
   add_square(snapshot, frame::ObjectKind::obstacle, Vec3(x, distance, 0), -Vec3::UnitY(), Vec3::UnitX(), 0.1)

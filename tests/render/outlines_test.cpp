@@ -57,11 +57,13 @@ struct Scene {
       }
     }
   }
-  void antialias(const std::optional<Floor>& floor = std::nullopt) {
+  /// Returns what antialiased the picture.
+  Outlines antialias(const std::optional<Floor>& floor = std::nullopt) {
     std::vector<DrawnMesh> meshes;
     for (const Thing& thing : things) meshes.push_back({thing.positions, thing.triangles});
-    Outlines(kOutlinedWidth, kOutlinedHeight)
-        .antialias(seen, meshes, floor, test_view(), {0, 0, kOutlinedWidth, kOutlinedHeight}, picture);
+    Outlines outlines(kOutlinedWidth, kOutlinedHeight);
+    outlines.antialias(seen, meshes, floor, test_view(), {0, 0, kOutlinedWidth, kOutlinedHeight}, picture);
+    return outlines;
   }
   int red(int x, int y) const { return static_cast<int>((picture[y * kOutlinedWidth + x] & 0xFFFF) / 257); }
 };
@@ -282,21 +284,14 @@ TEST(Outlines, APictureOfOneFlatThingIsLeftAlone) {
   Scene scene;
   scene.add(quad(-10, -10, kOutlinedWidth + 10, kOutlinedHeight + 10, 2, 0x121234345656), 2,
             [](double, double) { return true; });
-  Outlines outlines(kOutlinedWidth, kOutlinedHeight);
-  const std::vector<DrawnMesh> meshes = {{scene.things[0].positions, scene.things[0].triangles}};
-  outlines.antialias(scene.seen, meshes, std::nullopt, test_view(), {0, 0, kOutlinedWidth, kOutlinedHeight},
-                     scene.picture);
-  EXPECT_EQ(outlines.count(), 0u);
+  EXPECT_EQ(scene.antialias().count(), 0u);
 }
 
 TEST(Outlines, APictureWithoutSurfacesKeepsNothingOfTheOneBefore) {
   Scene scene;
   scene.add(quad(10, 10, 30, 50, 2, kWhite), 2,
             [](double x, double y) { return x > 10 && x < 30 && y > 10 && y < 50; });
-  Outlines outlines(kOutlinedWidth, kOutlinedHeight);
-  const std::vector<DrawnMesh> meshes = {{scene.things[0].positions, scene.things[0].triangles}};
-  outlines.antialias(scene.seen, meshes, std::nullopt, test_view(), {0, 0, kOutlinedWidth, kOutlinedHeight},
-                     scene.picture);
+  Outlines outlines = scene.antialias();
   EXPECT_GT(outlines.count(), 0u);
   Scene empty;
   outlines.antialias(empty.seen, {}, std::nullopt, test_view(), {}, empty.picture);

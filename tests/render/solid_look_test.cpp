@@ -157,7 +157,7 @@ TEST(Heat, IsShownByRopesAsByCloth) {
     std::vector<image::Image> images;
     for (const auto kind : {frame::ObjectKind::cloth, frame::ObjectKind::rope}) {
       frame::FrameSnapshot snapshot;
-      auto stage = std::make_shared<frame::Stage>(*stage_without_sky());
+      auto stage = stage_without_sky();
       stage->heat = frame::Stage::Heat::speed;
       stage->heat_max = 2;
       snapshot.stage = stage;

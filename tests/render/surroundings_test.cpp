@@ -120,9 +120,7 @@ TEST(Surroundings, BlurKeepsTheLightOfABox) {
 /// sheet on the floor by a black one 0.3 m above the floor. Horizontal light from the front lights only the wall.
 image::Image wall(double height, bool shelf) {
   frame::FrameSnapshot snapshot;
-  auto stage = std::make_shared<frame::Stage>();
-  stage->sky_intensity = 0;
-  snapshot.stage = stage;
+  snapshot.stage = stage_without_sky();
   add_floor(snapshot).appearance.color = Vec3::Ones();
   const auto add = [&](const Vec3& center, const Vec3& normal, const Vec3& color) {
     auto& look = add_square(snapshot, frame::ObjectKind::cloth, center, normal, Vec3::UnitX(), 0.3).appearance;
