@@ -66,11 +66,11 @@ std::span<const To> view_as(const std::vector<From>& points) {
   return {reinterpret_cast<const To*>(points.data()), points.size()};
 }
 
-/// The names of a list of cloths, bodies or obstacles.
+/// The names of a list of objects, such as cloths or bodies.
 template <class List>
 std::vector<std::string> names_of(const List& list) {
   std::vector<std::string> names;
-  for (const auto& entry : list) names.push_back(entry.name);
+  for (const auto& entry : list) names.emplace_back(entry.name);
   return names;
 }
 

@@ -23,12 +23,10 @@ std::span<const Object> Frame::objects() const {
 }
 
 const Object& Frame::object(std::string_view name) const {
-  std::string names;
-  for (const Object& object : data_->objects) {
+  for (const Object& object : data_->objects)
     if (object.name == name) return object;
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", object.name);
-  }
-  throw std::out_of_range(fmt::format("expected one of the objects {}, got {}", names, name));
+  throw std::out_of_range(
+      fmt::format("expected one of the objects {}, got {}", fmt::join(library::names_of(data_->objects), ", "), name));
 }
 
 }  // namespace weft
