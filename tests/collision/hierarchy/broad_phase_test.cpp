@@ -236,7 +236,7 @@ TEST(BroadPhase, WithASeparationListAndNormalConesListsEachPairOnce) {
     const std::vector<Vec3> x_t0 = motion.at(std::max(0, step - kStill)),
                             x_t1 = motion.at(std::max(0, step + 1 - kStill));
     for (BroadPhase* broad_phase : {&plain, &listed})
-      for (std::size_t s = 0; s < surfaces.size(); ++s) broad_phase->refit(s, x_t0, x_t1, kMargin);
+      for (std::size_t s = 0; s < surfaces.size(); ++s) broad_phase->refit(s, {x_t0, x_t1}, kMargin);
     const BothLists required = all_pairs(plain, surfaces.size()), found = all_pairs(listed, surfaces.size());
     for (const std::size_t l : {0U, 1U}) EXPECT_TRUE(std::ranges::includes(found[l], required[l])) << step;
   }
