@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <utility>
 
 #include "core/version.hpp"
 #include "tools/cli/error_report.hpp"
@@ -36,23 +35,33 @@ Json finite(double value) {
 Json totals_json(const RunReport& report) {
   const StageTotals totals = total_times(report.frames);
   const StepTotals steps = total_steps(report.frames);
-  const std::pair<const char*, StageTime> stages[] = {
-      {"simulate", totals.simulate}, {"collide", totals.collide},
-      {"forces", totals.forces},     {"preconditioner", totals.preconditioner},
-      {"linear", totals.linear},     {"render", totals.render},
-      {"encode", totals.encode},     {"meshes", totals.meshes},
-      {"cache", report.cache},       {"setup", report.setup}};
-  Json json;
-  for (const auto& [name, time] : stages) json[name] = time.wall_s;
-  json["wall"] = report.wall_s;
-  for (const auto& [name, time] : stages) json[fmt::format("{}_cpu", name)] = time.cpu_s;
-  json["cpu"] = report.cpu_s;
-  json["steps"] = steps.accepted;
-  json["rejected_steps"] = steps.rejected;
-  json["inexact_steps"] = steps.inexact;
-  json["error_estimate_m"] = steps.error_estimate;
-  json["solver_error_m"] = steps.solver_error;
-  return json;
+  return {{"simulate", totals.simulate.wall_s},
+          {"collide", totals.collide.wall_s},
+          {"forces", totals.forces.wall_s},
+          {"preconditioner", totals.preconditioner.wall_s},
+          {"linear", totals.linear.wall_s},
+          {"render", totals.render.wall_s},
+          {"encode", totals.encode.wall_s},
+          {"meshes", totals.meshes.wall_s},
+          {"cache", report.cache.wall_s},
+          {"setup", report.setup.wall_s},
+          {"wall", report.wall_s},
+          {"simulate_cpu", totals.simulate.cpu_s},
+          {"collide_cpu", totals.collide.cpu_s},
+          {"forces_cpu", totals.forces.cpu_s},
+          {"preconditioner_cpu", totals.preconditioner.cpu_s},
+          {"linear_cpu", totals.linear.cpu_s},
+          {"render_cpu", totals.render.cpu_s},
+          {"encode_cpu", totals.encode.cpu_s},
+          {"meshes_cpu", totals.meshes.cpu_s},
+          {"cache_cpu", report.cache.cpu_s},
+          {"setup_cpu", report.setup.cpu_s},
+          {"cpu", report.cpu_s},
+          {"steps", steps.accepted},
+          {"rejected_steps", steps.rejected},
+          {"inexact_steps", steps.inexact},
+          {"error_estimate_m", steps.error_estimate},
+          {"solver_error_m", steps.solver_error}};
 }
 
 }  // namespace
